@@ -1,0 +1,1 @@
+"""Risorius engine: a physically simulated face (Zhang, Prakash, Sung, Eurographics 2001)."""

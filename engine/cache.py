@@ -1,0 +1,77 @@
+"""Arrays that are slow to make, kept on disk under a hash of what made them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+Arrays = dict[str, npt.NDArray[np.generic]]
+
+
+def cache_folder() -> Path:
+    """Return the folder of cached arrays: RISORIUS_CACHE_DIR, else the user's cache folder."""
+    given = os.environ.get("RISORIUS_CACHE_DIR")
+    if given:
+        return Path(given)
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "risorius"
+
+
+def content_key(*parts: object) -> str:
+    """Return a hash of `parts`: arrays by shape, type and bytes, anything else by its repr."""
+    digest = hashlib.sha256()
+    for part in parts:
+        if isinstance(part, np.ndarray):
+            digest.update(f"{part.dtype.str}{part.shape}".encode())
+            digest.update(np.ascontiguousarray(part).tobytes())
+        elif isinstance(part, bytes):
+            digest.update(part)
+        else:
+            digest.update(repr(part).encode())
+        digest.update(b"\0")
+    return digest.hexdigest()[:20]
+
+
+def cached_arrays(kind: str, key: str, build: Callable[[], Arrays]) -> Arrays:
+    """Return the arrays stored under `kind` and `key`, or build and store them.
+
+    A missing, damaged or unwritable cache costs time, never an error.
+
+    Args:
+        kind: What the arrays are, one word; names the file.
+        key: Hash of everything the arrays depend on (`content_key`).
+        build: Makes the arrays when they are not stored.
+    """
+    path = cache_folder() / f"{kind}-{key}.npz"
+    stored = _read(path)
+    if stored is not None:
+        return stored
+    arrays = build()
+    _write(path, arrays)
+    return arrays
+
+
+def _read(path: Path) -> Arrays | None:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return {name: file[name] for name in file.files}
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile, KeyError):
+        return None
+
+
+def _write(path: Path, arrays: Arrays) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        # Written aside and renamed: a reader never sees half a file.
+        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
+            np.savez(file, allow_pickle=False, **arrays)
+        os.replace(file.name, path)
+    except OSError:
+        return

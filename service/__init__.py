@@ -1,0 +1,1 @@
+"""Risorius service: sessions of the simulator over HTTP and WebSocket."""
