@@ -1,0 +1,158 @@
+"""The binary frames of the stream, version 1: a face's surface as displacements from rest.
+
+A frame stands alone: whoever reads only this one has the whole face. All numbers are little
+endian; lengths are in metres, as in `surface.glb`, whose vertex order the frame follows.
+
+| byte | type | content |
+|---|---|---|
+| 0 | uint8 | kind: 1 = surface |
+| 1 | uint8 | version of the kind: 1 |
+| 2 | uint16 | flags; bit 0: asleep, the last new frame until something moves |
+| 4 | uint32 | tick, 60 a second of the session's own time |
+| 8 | 4 float32 | rotation of the jaw, quaternion x, y, z, w |
+| 24 | 3 float32 | offset of the jaw's hinge from its rest place, x, y, z in metres |
+| 36 | 4 float32 | gaze in degrees: left eye yaw, pitch; right eye yaw, pitch |
+| 52 | 3 float32 | head in degrees: yaw, pitch, roll |
+| 64 | uint16 | vertex count s |
+| 66 | uint16 | moved count k: the vertices whose displacement follows |
+| 68 | ceil(s / 8) bytes | bitmap, least significant bit first: bit i is set if vertex i is moved |
+| even | k x 3 int16 | x, y, z displacement in steps of 20 micrometres, in vertex order |
+
+A zero byte pads the bitmap where the displacements would start at an odd offset. A vertex whose
+bit is not set is at rest, to half a step. `docs/stream.md` has a reader of 40 lines.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+from engine import Frame, JawHinge
+
+SUBPROTOCOL = "risorius.v1"
+KIND_SURFACE = 1
+FRAME_VERSION = 1
+FLAG_ASLEEP = 1
+GRID_METRES = 2e-5
+RATE = 60
+
+_HEADER = struct.Struct("<BBHI4f3f4f3fHH")
+_MILLIMETRES_PER_STEP = GRID_METRES * 1000.0
+_STEP_LIMIT = 32767
+
+
+class MalformedFrame(ValueError):
+    """Bytes that are not a frame of this version."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceFrame:
+    """What one binary frame says.
+
+    Attributes:
+        tick: Session time in ticks.
+        asleep: Nothing new follows until something moves.
+        jaw_quaternion: Rotation of the jaw, x, y, z, w.
+        jaw_offset: Offset of the jaw's hinge from rest [m].
+        gaze: Left yaw, left pitch, right yaw, right pitch [degrees].
+        head: Yaw, pitch, roll [degrees].
+        steps: Displacements from rest [grid steps], int16, shape (vertices, 3).
+    """
+
+    tick: int
+    asleep: bool
+    jaw_quaternion: tuple[float, float, float, float]
+    jaw_offset: tuple[float, float, float]
+    gaze: tuple[float, float, float, float]
+    head: tuple[float, float, float]
+    steps: npt.NDArray[np.int16]
+
+    @property
+    def displacements(self) -> npt.NDArray[np.float64]:
+        """Displacements from rest [m], shape (vertices, 3)."""
+        return self.steps.astype(np.float64) * GRID_METRES
+
+
+def surface_frame(frame: Frame, jaw: JawHinge) -> SurfaceFrame:
+    """Return what viewers are told of `frame`: the surface on the grid, jaw, gaze and head.
+
+    Raises:
+        ValueError: If a number of the frame is not finite.
+    """
+    pose = frame.pose
+    rotation, offset = jaw.transform(pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)
+    x, y, z, w = (float(value) for value in Rotation.from_matrix(rotation).as_quat())
+    return SurfaceFrame(
+        tick=frame.tick,
+        asleep=frame.asleep,
+        jaw_quaternion=(x, y, z, w),
+        jaw_offset=(offset[0] / 1000.0, offset[1] / 1000.0, offset[2] / 1000.0),
+        gaze=(*pose.gaze_left, *pose.gaze_right),
+        head=pose.head,
+        steps=_to_grid(frame.displacements),
+    )
+
+
+def _to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
+    """Round displacements [mm] to grid steps."""
+    if not np.isfinite(displacements).all():
+        raise ValueError("a displacement is not finite")
+    steps = np.rint(displacements / _MILLIMETRES_PER_STEP)
+    return np.clip(steps, -_STEP_LIMIT, _STEP_LIMIT).astype(np.int16)
+
+
+def encode_frame(frame: SurfaceFrame) -> bytes:
+    """Return the bytes of `frame`, as laid out above."""
+    moved = frame.steps.any(axis=1)
+    header = _HEADER.pack(
+        KIND_SURFACE,
+        FRAME_VERSION,
+        FLAG_ASLEEP if frame.asleep else 0,
+        frame.tick & 0xFFFFFFFF,
+        *frame.jaw_quaternion,
+        *frame.jaw_offset,
+        *frame.gaze,
+        *frame.head,
+        len(moved),
+        int(np.count_nonzero(moved)),
+    )
+    bitmap = np.packbits(moved, bitorder="little").tobytes()
+    padding = b"\0" * (len(bitmap) % 2)
+    return header + bitmap + padding + frame.steps[moved].astype("<i2").tobytes()
+
+
+def decode_frame(data: bytes) -> SurfaceFrame:
+    """Return what `data` says.
+
+    Raises:
+        MalformedFrame: If `data` is of another kind or version, or its length is not what its
+            header says.
+    """
+    if len(data) < _HEADER.size:
+        raise MalformedFrame(f"a frame has at least {_HEADER.size} bytes, this one {len(data)}")
+    kind, version, flags, tick, *numbers, vertices, moved_count = _HEADER.unpack_from(data)
+    if (kind, version) != (KIND_SURFACE, FRAME_VERSION):
+        raise MalformedFrame(f"kind {kind} version {version} is not surface version 1")
+    bitmap_size = (vertices + 7) // 8
+    start = _HEADER.size + bitmap_size + bitmap_size % 2
+    if len(data) != start + 6 * moved_count:
+        raise MalformedFrame(f"{len(data)} bytes, but the header says {start + 6 * moved_count}")
+    bitmap = np.frombuffer(data, np.uint8, bitmap_size, _HEADER.size)
+    moved = np.unpackbits(bitmap, count=vertices, bitorder="little").astype(bool)
+    if np.count_nonzero(moved) != moved_count:
+        raise MalformedFrame("the bitmap does not have as many bits set as vertices moved")
+    steps = np.zeros((vertices, 3), np.int16)
+    steps[moved] = np.frombuffer(data, "<i2", 3 * moved_count, start).reshape(-1, 3)
+    return SurfaceFrame(
+        tick=tick,
+        asleep=bool(flags & FLAG_ASLEEP),
+        jaw_quaternion=(numbers[0], numbers[1], numbers[2], numbers[3]),
+        jaw_offset=(numbers[4], numbers[5], numbers[6]),
+        gaze=(numbers[7], numbers[8], numbers[9], numbers[10]),
+        head=(numbers[11], numbers[12], numbers[13]),
+        steps=steps,
+    )

@@ -1,0 +1,19 @@
+"""What every test shares: the switch that rewrites golden files."""
+
+from __future__ import annotations
+
+import pytest
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--update-golden",
+        action="store_true",
+        help="rewrite the golden files from what the code does now; review the diff",
+    )
+
+
+@pytest.fixture(scope="session")
+def update_golden(request: pytest.FixtureRequest) -> bool:
+    """Tell whether this run rewrites golden files instead of comparing with them."""
+    return bool(request.config.getoption("--update-golden"))
