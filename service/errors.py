@@ -1,0 +1,110 @@
+"""What the service answers when it refuses: one shape, everywhere.
+
+Refused
+├── NotFound       404  no such session, rig, clip, …
+├── Conflict       409  the thing is not in a state for this
+├── Unprocessable  422  a body or a name that cannot be used
+└── Busy           503  a limit is reached; comes with Retry-After
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from starlette.responses import Response
+
+from engine import EngineError, UnknownName
+
+_WORDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
+
+
+class Refused(Exception):
+    """Anything that the service refuses.
+
+    Attributes:
+        status: The HTTP status.
+        error: The error's name, in snake case.
+        message: One sentence.
+        known: The names that would have been accepted, if it is about a name.
+    """
+
+    status = 400
+
+    def __init__(self, error: str, message: str, *, known: Iterable[str] | None = None) -> None:
+        super().__init__(message)
+        self.error = error
+        self.message = message
+        self.known = None if known is None else list(known)
+        self.headers: dict[str, str] = {}
+
+    def body(self) -> dict[str, object]:
+        """Return the JSON body of the answer."""
+        return error_body(self.error, self.message, known=self.known)
+
+
+class NotFound(Refused):
+    """No such session, rig, clip, muscle or route."""
+
+    status = 404
+
+
+class Conflict(Refused):
+    """The thing is not in a state that allows this."""
+
+    status = 409
+
+
+class Unprocessable(Refused):
+    """A body, a field or a name that cannot be used."""
+
+    status = 422
+
+
+class Busy(Refused):
+    """A limit is reached; a later attempt may succeed."""
+
+    status = 503
+
+    def __init__(self, error: str, message: str, *, retry_after: int = 1) -> None:
+        super().__init__(error, message)
+        self.headers = {"Retry-After": str(retry_after)}
+
+
+def refused_by_engine(error: EngineError, *, status: int = 422) -> Refused:
+    """Return the answer to an engine error: its name in snake case, its message, what is known."""
+    refused: Refused
+    if isinstance(error, UnknownName):
+        name = f"unknown_{error.kind.replace(' ', '_').lower()}"
+        refused = Refused(name, str(error), known=error.known)
+    else:
+        refused = Refused(_WORDS.sub("_", type(error).__name__).lower(), str(error))
+    refused.status = status
+    return refused
+
+
+def error_body(
+    error: str, message: str, *, known: Iterable[str] | None = None
+) -> dict[str, object]:
+    """Return the one error shape."""
+    body: dict[str, object] = {"error": error, "message": message}
+    if known is not None:
+        body["known"] = list(known)
+    return body
+
+
+def json_response(
+    content: Mapping[str, Any] | list[Any],
+    *,
+    status: int = 200,
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """Return `content` as JSON in ASCII: a lone surrogate in a name must not break the answer.
+
+    Raises:
+        ValueError: If a number is not finite.
+    """
+    text = json.dumps(content, allow_nan=False, separators=(",", ":"))
+    return Response(text, status, dict(headers or {}), "application/json")

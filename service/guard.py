@@ -1,0 +1,208 @@
+"""Who may speak to the service: host names, origins, keys, rates and body sizes.
+
+One ASGI middleware in front of every route and socket, the viewer's files included. A browser
+sends Host and Origin by itself, so a foreign web page cannot drive a local face, and a foreign
+name that points to this address (DNS rebinding) is not answered.
+"""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections import OrderedDict
+from collections.abc import Iterable
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from .errors import Refused, json_response
+from .settings import Settings
+
+# A browser cannot set headers on a socket: it offers its key as a second subprotocol.
+KEY_SUBPROTOCOL = "risorius.key."
+_LOOPBACK = ("localhost", "127.0.0.1", "::1")
+_WILDCARD = ("0.0.0.0", "::")
+_OPEN_PATHS = ("/api/health", "/api/ready")
+_CLIENTS_REMEMBERED = 4096
+
+
+class Denied(Refused):
+    """A request that the guard turns away."""
+
+    def __init__(self, status: int, error: str, message: str) -> None:
+        super().__init__(error, message)
+        self.status = status
+
+
+class RateLimit:
+    """A token bucket for each client: bursts of two seconds' worth."""
+
+    def __init__(self, per_second: float) -> None:
+        self.per_second = per_second
+        self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
+
+    def allow(self, client: str) -> bool:
+        """Take one token of `client`; False when there is none left."""
+        now = time.monotonic()
+        burst = max(1.0, 2.0 * self.per_second)
+        tokens, since = self._buckets.get(client, (burst, now))
+        tokens = min(burst, tokens + (now - since) * self.per_second)
+        allowed = tokens >= 1.0
+        self._buckets[client] = (tokens - 1.0 if allowed else tokens, now)
+        self._buckets.move_to_end(client)
+        if len(self._buckets) > _CLIENTS_REMEMBERED:
+            self._buckets.popitem(last=False)
+        return allowed
+
+
+class Guard:
+    """The middleware; everything behind it may trust host, origin, key and body size."""
+
+    def __init__(self, app: ASGIApp, *, settings: Settings, rate: RateLimit) -> None:
+        self.app = app
+        self.settings = settings
+        self.rate = rate
+        hosts = [*_LOOPBACK, *settings.allowed_hosts]
+        if settings.host not in _WILDCARD:
+            hosts.append(settings.host)
+        self.hosts = frozenset(host.lower() for host in hosts)
+        self.origins = frozenset(origin.lower().rstrip("/") for origin in settings.allowed_origins)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or turn it away."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        try:
+            self._admit(scope)
+            if scope["type"] == "http":
+                receive = await self._read_body(scope, receive)
+        except Denied as denied:
+            await _turn_away(denied, scope, receive, send)
+            return
+        await self.app(scope, receive, send)
+
+    def _admit(self, scope: Scope) -> None:
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if _host_name(host) not in self.hosts:
+            raise Denied(
+                421,
+                "unknown_host",
+                f"this service does not answer for the host {host!r}; set RISORIUS_ALLOWED_HOSTS",
+            )
+        origin = headers.get("origin")
+        if origin is not None and not self._own_origin(origin, host):
+            raise Denied(
+                403,
+                "forbidden_origin",
+                f"pages of {origin!r} may not use this service; set RISORIUS_ALLOWED_ORIGINS",
+            )
+        client = self._identify(scope, headers)
+        if not self.rate.allow(client):
+            denied = Denied(429, "too_many_requests", "too many requests; try again in a second")
+            denied.headers["Retry-After"] = "1"
+            raise denied
+        scope["risorius.client"] = client
+
+    def _own_origin(self, origin: str, host: str) -> bool:
+        origin = origin.lower()
+        return origin in self.origins or (
+            origin.startswith(("http://", "https://")) and origin.split("//", 1)[1] == host.lower()
+        )
+
+    def _identify(self, scope: Scope, headers: Headers) -> str:
+        """Return who asks, for the rate limit: a key where keys are set, else an address."""
+        client = scope.get("client")
+        address = str(client[0]) if client else "local"
+        path = str(scope["path"])
+        needs_key = path.startswith(("/api", "/metrics", "/openapi.json", "/docs", "/mcp"))
+        if not self.settings.api_keys or not needs_key or path in _OPEN_PATHS:
+            return address
+        if scope.get("method") == "OPTIONS":
+            return address  # A browser's preflight question carries no key.
+        key = _offered_key(headers)
+        if not _any_equal(key, self.settings.api_keys):
+            denied = Denied(
+                401, "unauthorized", "send a key as 'Authorization: Bearer …' or 'X-API-Key: …'"
+            )
+            denied.headers["WWW-Authenticate"] = "Bearer"
+            raise denied
+        return key
+
+    async def _read_body(self, scope: Scope, receive: Receive) -> Receive:
+        """Read the whole body within the limit and return a `receive` that hands it on."""
+        limit = self.settings.max_body_bytes
+        too_large = Denied(413, "body_too_large", f"a request body has at most {limit} bytes")
+        length = Headers(scope=scope).get("content-length", "0")
+        if not length.isdecimal() or len(length) > 18 or int(length) > limit:
+            raise too_large
+        body = bytearray()
+        while True:
+            message = await receive()
+            if message["type"] != "http.request":
+                break
+            body += message.get("body", b"")
+            if len(body) > limit:
+                raise too_large
+            if not message.get("more_body", False):
+                break
+        return _replay(bytes(body), receive)
+
+
+def _replay(body: bytes, receive: Receive) -> Receive:
+    """Return a `receive` that gives `body` once, then whatever comes after it."""
+    given = False
+
+    async def replayed() -> Message:
+        nonlocal given
+        if given:
+            return await receive()
+        given = True
+        return {"type": "http.request", "body": body, "more_body": False}
+
+    return replayed
+
+
+def _host_name(host: str) -> str:
+    """Return the name in a Host header without its port, or nothing if it is malformed."""
+    try:
+        return (urlsplit(f"//{host}").hostname or "").lower()
+    except ValueError:
+        return ""
+
+
+def _offered_key(headers: Headers) -> str:
+    scheme, _, token = headers.get("authorization", "").partition(" ")
+    if scheme.lower() == "bearer":
+        return token.strip()
+    for protocol in headers.get("sec-websocket-protocol", "").split(","):
+        if protocol.strip().startswith(KEY_SUBPROTOCOL):
+            return protocol.strip().removeprefix(KEY_SUBPROTOCOL)
+    return headers.get("x-api-key", "")
+
+
+def _any_equal(key: str, keys: Iterable[str]) -> bool:
+    """Compare in constant time, with every key."""
+    offered = key.encode("utf-8", "surrogatepass")
+    return any([secrets.compare_digest(offered, other.encode()) for other in keys])
+
+
+async def _turn_away(denied: Denied, scope: Scope, receive: Receive, send: Send) -> None:
+    response = json_response(denied.body(), status=denied.status, headers=denied.headers)
+    if scope["type"] == "http":
+        await response(scope, receive, send)
+    elif "websocket.http.response" in scope.get("extensions", {}):
+        await _deny_handshake(
+            response.status_code, response.raw_headers, bytes(response.body), send
+        )
+    else:
+        await send({"type": "websocket.close", "code": 1008, "reason": denied.error})
+
+
+async def _deny_handshake(
+    status: int, headers: list[tuple[bytes, bytes]], body: bytes, send: Send
+) -> None:
+    await send({"type": "websocket.http.response.start", "status": status, "headers": headers})
+    await send({"type": "websocket.http.response.body", "body": body})

@@ -1,0 +1,219 @@
+"""The store: every table and every SQL statement of the service."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar
+
+from sqlalchemy import (
+    JSON,
+    Engine,
+    Float,
+    String,
+    Text,
+    create_engine,
+    delete,
+    event,
+    func,
+    make_url,
+    select,
+    update,
+)
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, sessionmaker
+from sqlalchemy.pool import StaticPool
+
+Row = TypeVar("Row", bound="Table")
+
+_BUSY_TIMEOUT_MS = 5000
+
+
+class Table(DeclarativeBase):
+    """Base of the tables."""
+
+    type_annotation_map: ClassVar[dict[Any, Any]] = {dict[str, Any]: JSON, list[Any]: JSON}
+
+
+class RigRow(Table):
+    """A derived rig: the rig it came from and what was changed."""
+
+    __tablename__ = "rigs"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    base: Mapped[str] = mapped_column(String(64))
+    changes: Mapped[dict[str, Any]]
+    created: Mapped[float] = mapped_column(Float)
+
+
+class SessionRow(Table):
+    """A session: its rig, its model, and the controls it held last."""
+
+    __tablename__ = "sessions"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    rig: Mapped[str] = mapped_column(String(64))
+    model: Mapped[dict[str, Any]]
+    held: Mapped[list[Any]]
+    created: Mapped[float] = mapped_column(Float)
+    used: Mapped[float] = mapped_column(Float)
+
+
+class ClipRow(Table):
+    """A clip: what was asked for, how far it is, and what it gave."""
+
+    __tablename__ = "clips"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    rig: Mapped[str] = mapped_column(String(64))
+    fps: Mapped[int]
+    request: Mapped[dict[str, Any]]
+    status: Mapped[str] = mapped_column(String(16), index=True)
+    message: Mapped[str] = mapped_column(Text, default="")
+    report: Mapped[dict[str, Any]]
+    created: Mapped[float] = mapped_column(Float)
+    finished: Mapped[float | None] = mapped_column(Float, default=None)
+
+
+class Store:
+    """Connections to one database; every method is one short transaction."""
+
+    def __init__(self, url: str) -> None:
+        self.engine = _connect(url)
+        Table.metadata.create_all(self.engine)
+        self._session = sessionmaker(self.engine, expire_on_commit=False)
+
+    def close(self) -> None:
+        """Close every connection."""
+        self.engine.dispose()
+
+    # Rigs.
+
+    def add_rig(self, rig: str, *, base: str, changes: Mapping[str, Any]) -> None:
+        """Keep a derived rig; one that is there already stays."""
+        with self._session.begin() as session:
+            if session.get(RigRow, rig) is None:
+                session.add(RigRow(id=rig, base=base, changes=dict(changes), created=time.time()))
+
+    def rig(self, rig: str) -> RigRow | None:
+        """Return the derived rig of that id."""
+        return self._get(RigRow, rig)
+
+    def rigs(self) -> Sequence[RigRow]:
+        """Return the derived rigs, oldest first."""
+        with self._session() as session:
+            return session.scalars(select(RigRow).order_by(RigRow.created)).all()
+
+    # Sessions.
+
+    def add_session(self, session_id: str, *, rig: str, model: Mapping[str, str]) -> SessionRow:
+        """Keep a new session."""
+        now = time.time()
+        row = SessionRow(id=session_id, rig=rig, model=dict(model), held=[], created=now, used=now)
+        with self._session.begin() as session:
+            session.add(row)
+        return row
+
+    def keep_session(self, session_id: str, *, rig: str, held: Sequence[Any], used: float) -> None:
+        """Keep what a session holds now."""
+        with self._session.begin() as session:
+            session.execute(
+                update(SessionRow)
+                .where(SessionRow.id == session_id)
+                .values(rig=rig, held=list(held), used=used)
+            )
+
+    def remove_session(self, session_id: str) -> None:
+        """Forget a session."""
+        with self._session.begin() as session:
+            session.execute(delete(SessionRow).where(SessionRow.id == session_id))
+
+    def session(self, session_id: str) -> SessionRow | None:
+        """Return the session of that id."""
+        return self._get(SessionRow, session_id)
+
+    def sessions(self) -> Sequence[SessionRow]:
+        """Return the sessions, oldest first."""
+        with self._session() as session:
+            return session.scalars(select(SessionRow).order_by(SessionRow.created)).all()
+
+    # Clips.
+
+    def add_clip(self, clip: str, *, rig: str, fps: int, request: Mapping[str, Any]) -> ClipRow:
+        """Keep a clip that waits to be rendered."""
+        row = ClipRow(
+            id=clip,
+            rig=rig,
+            fps=fps,
+            request=dict(request),
+            status="queued",
+            message="",
+            report={},
+            created=time.time(),
+        )
+        with self._session.begin() as session:
+            session.add(row)
+        return row
+
+    def keep_clip(
+        self,
+        clip: str,
+        *,
+        status: str,
+        message: str = "",
+        report: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Keep how far a clip is."""
+        values: dict[str, Any] = {"status": status, "message": message}
+        if report is not None:
+            values["report"] = dict(report)
+        if status in ("done", "failed", "cancelled"):
+            values["finished"] = time.time()
+        with self._session.begin() as session:
+            session.execute(update(ClipRow).where(ClipRow.id == clip).values(**values))
+
+    def remove_clip(self, clip: str) -> None:
+        """Forget a clip."""
+        with self._session.begin() as session:
+            session.execute(delete(ClipRow).where(ClipRow.id == clip))
+
+    def clip(self, clip: str) -> ClipRow | None:
+        """Return the clip of that id."""
+        return self._get(ClipRow, clip)
+
+    def clips(self) -> Sequence[ClipRow]:
+        """Return the clips, oldest first."""
+        with self._session() as session:
+            return session.scalars(select(ClipRow).order_by(ClipRow.created, ClipRow.id)).all()
+
+    def clip_count(self) -> int:
+        """Return how many clips are kept."""
+        with self._session() as session:
+            return session.scalar(select(func.count()).select_from(ClipRow)) or 0
+
+    def _get(self, table: type[Row], key: str) -> Row | None:
+        with self._session() as session:
+            return session.get(table, key)
+
+
+def _connect(url: str) -> Engine:
+    """Open a database; SQLite files are made with their folder and set up for many readers."""
+    parsed = make_url(url)
+    if parsed.get_backend_name() != "sqlite":
+        return create_engine(url, pool_pre_ping=True)
+    if not parsed.database or parsed.database == ":memory:":
+        engine = create_engine(url, poolclass=StaticPool, connect_args={"check_same_thread": False})
+    else:
+        Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
+        engine = create_engine(url, connect_args={"check_same_thread": False})
+    event.listen(engine, "connect", _set_up_sqlite)
+    return engine
+
+
+def _set_up_sqlite(connection: Any, _record: object) -> None:
+    cursor = connection.cursor()
+    cursor.execute("PRAGMA journal_mode=WAL")
+    cursor.execute(f"PRAGMA busy_timeout={_BUSY_TIMEOUT_MS}")
+    cursor.execute("PRAGMA foreign_keys=ON")
+    cursor.execute("PRAGMA synchronous=NORMAL")
+    cursor.close()
