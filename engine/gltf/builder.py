@@ -1,0 +1,254 @@
+"""A GLB file under construction: accessors, meshes, nodes, animation; the only pygltflib user.
+
+Layout rules are those of the glTF 2.0 specification, sections 3.6 (buffers and accessors), 3.7
+(meshes, morph targets) and 3.11 (animation).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+import numpy.typing as npt
+import pygltflib
+
+from .materials import MATERIALS
+
+Array = npt.NDArray[Any]
+Extras = Mapping[str, Any]
+
+_COMPONENTS = {
+    "float32": pygltflib.FLOAT,
+    "uint32": pygltflib.UNSIGNED_INT,
+    "uint16": pygltflib.UNSIGNED_SHORT,
+    "uint8": pygltflib.UNSIGNED_BYTE,
+}
+_TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
+_SPARSE_GAIN = 0.8
+"""A sparse accessor must be at least this much smaller, for it costs the reader a pass."""
+
+
+def metres(millimetres: Array) -> npt.NDArray[np.float32]:
+    """Return lengths in metres, single precision, as glTF wants them."""
+    return np.asarray(np.asarray(millimetres, dtype=np.float64) * 1e-3, dtype=np.float32)
+
+
+def compact_indices(indices: Array) -> Array:
+    """Return `indices` in the smallest type that every reader takes: uint16, else uint32."""
+    # 65535 itself is the primitive restart value and may not be used.
+    small = indices.size == 0 or int(indices.max()) < 65535
+    return np.asarray(indices, dtype=np.uint16 if small else np.uint32)
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One animated property: `values` per key of `node`'s `path` ("rotation", "weights", …)."""
+
+    node: int
+    path: str
+    values: Array
+
+
+class GlbBuilder:
+    """Collects the objects of one GLB file; indices that it returns are glTF indices."""
+
+    def __init__(self, extras: Extras) -> None:
+        # pygltflib is annotated in part only, and wrongly where targets may be plain dicts.
+        self._gltf: Any = pygltflib.GLTF2(
+            asset=pygltflib.Asset(generator="Risorius", extras=dict(extras)),
+            scene=0,
+            scenes=[pygltflib.Scene(name="risorius")],
+        )
+        self._blob = bytearray()
+        self._zeros: dict[int, int] = {}
+        self._materials: dict[str, int] = {}
+
+    # Accessors
+
+    def accessor(self, array: Array, *, target: int | None = None, bounds: bool = False) -> int:
+        """Store `array`, shape (n,) or (n, 3 or 4), and return its accessor.
+
+        Args:
+            array: float32, uint32, uint16 or uint8.
+            target: ARRAY_BUFFER or ELEMENT_ARRAY_BUFFER for vertex data, None for the rest.
+            bounds: State the smallest and largest value per component.
+        """
+        accessor = self._describe(array.shape, array.dtype)
+        accessor.bufferView = self._view(array, target)
+        if bounds:
+            _state_bounds(accessor, array)
+        return self._append(self._gltf.accessors, accessor)
+
+    def delta(self, array: Array, *, smallest: float, bounds: bool = False) -> int:
+        """Store a morph target attribute, shape (n, 3), sparse where that is smaller.
+
+        Args:
+            array: float32 differences from the base attribute.
+            smallest: Rows whose components all stay below this are taken as zero.
+            bounds: State the smallest and largest value per component.
+        """
+        rows = np.flatnonzero((np.abs(array) >= smallest).any(axis=1))
+        if rows.size == 0:
+            return self._zero(len(array), bounds)
+        values = np.ascontiguousarray(array[rows])
+        indices = compact_indices(rows)
+        if indices.nbytes + values.nbytes > _SPARSE_GAIN * array.nbytes:
+            return self.accessor(array, target=pygltflib.ARRAY_BUFFER, bounds=bounds)
+        accessor = self._describe(array.shape, array.dtype)
+        accessor.sparse = pygltflib.Sparse(
+            count=len(rows),
+            indices=pygltflib.AccessorSparseIndices(
+                bufferView=self._view(indices, None),
+                componentType=_COMPONENTS[indices.dtype.name],
+            ),
+            values=pygltflib.AccessorSparseValues(bufferView=self._view(values, None)),
+        )
+        if bounds:
+            kept = np.concatenate([values, np.zeros((1, 3), np.float32)])
+            _state_bounds(accessor, kept if len(rows) < len(array) else values)
+        return self._append(self._gltf.accessors, accessor)
+
+    def _zero(self, count: int, bounds: bool) -> int:
+        """Return an accessor of `count` zero vectors, which takes no bytes (section 3.6.2.3)."""
+        if count not in self._zeros:
+            accessor = self._describe((count, 3), np.dtype(np.float32))
+            _state_bounds(accessor, np.zeros((1, 3), np.float32))
+            self._zeros[count] = self._append(self._gltf.accessors, accessor)
+        return self._zeros[count]
+
+    def _describe(self, shape: tuple[int, ...], dtype: np.dtype[Any]) -> pygltflib.Accessor:
+        return pygltflib.Accessor(
+            # No offset: pygltflib would write one for accessors without a buffer view too.
+            byteOffset=None,
+            componentType=_COMPONENTS[dtype.name],
+            count=shape[0],
+            type=_TYPES[shape[1] if len(shape) > 1 else 1],
+        )
+
+    def _view(self, array: Array, target: int | None) -> int:
+        data = np.ascontiguousarray(array).tobytes()
+        view = pygltflib.BufferView(
+            buffer=0, byteOffset=len(self._blob), byteLength=len(data), target=target
+        )
+        self._blob += data + bytes(-len(data) % 4)
+        return self._append(self._gltf.bufferViews, view)
+
+    # Meshes
+
+    def primitive(
+        self,
+        attributes: Mapping[str, Array],
+        triangles: Array,
+        *,
+        material: str,
+        targets: Sequence[Mapping[str, int]] = (),
+    ) -> pygltflib.Primitive:
+        """Return triangles with vertex `attributes`, each shape (n,) or (n, 3 or 4)."""
+        stored = {
+            name: self.accessor(
+                np.asarray(values), target=pygltflib.ARRAY_BUFFER, bounds=name == "POSITION"
+            )
+            for name, values in attributes.items()
+        }
+        indices = self.accessor(
+            compact_indices(np.asarray(triangles).ravel()),
+            target=pygltflib.ELEMENT_ARRAY_BUFFER,
+        )
+        return pygltflib.Primitive(
+            attributes=pygltflib.Attributes(**stored),
+            indices=indices,
+            material=self._material(material),
+            targets=cast(Any, [dict(target) for target in targets]),
+        )
+
+    def mesh(
+        self,
+        name: str,
+        primitives: Sequence[pygltflib.Primitive],
+        *,
+        target_names: Sequence[str] = (),
+    ) -> int:
+        """Return a mesh; with `target_names` also its morph weights, all zero."""
+        extras = {"targetNames": list(target_names)} if target_names else {}
+        mesh = pygltflib.Mesh(
+            name=name,
+            primitives=list(primitives),
+            weights=[0.0] * len(target_names),
+            extras=extras,
+        )
+        return self._append(self._gltf.meshes, mesh)
+
+    def _material(self, name: str) -> int:
+        if name not in self._materials:
+            material = _material_named(name)
+            self._materials[name] = self._append(self._gltf.materials, material)
+        return self._materials[name]
+
+    # Nodes and animation
+
+    def node(
+        self,
+        name: str,
+        *,
+        parent: int | None = None,
+        mesh: int | None = None,
+        translation: Array | None = None,
+        extras: Extras | None = None,
+    ) -> int:
+        """Add a node under `parent` (the scene, if None), at `translation` mm from it."""
+        node = pygltflib.Node(name=name, mesh=mesh, extras=dict(extras or {}))
+        if translation is not None and np.any(translation):
+            node.translation = [float(value) for value in metres(translation)]
+        index = self._append(self._gltf.nodes, node)
+        siblings = self._gltf.scenes[0].nodes if parent is None else self._children(parent)
+        siblings.append(index)
+        return index
+
+    def _children(self, node: int) -> list[int]:
+        children: list[int] = self._gltf.nodes[node].children
+        return children
+
+    def animation(self, name: str, times: Array, channels: Sequence[Channel]) -> None:
+        """Add a named animation: every channel has one key per entry of `times`, seconds."""
+        keys = self.accessor(np.asarray(times, np.float32), bounds=True)
+        animation = pygltflib.Animation(name=name)
+        for channel in channels:
+            output = self.accessor(np.asarray(channel.values, np.float32))
+            sampler = pygltflib.AnimationSampler(input=keys, output=output, interpolation="LINEAR")
+            target = pygltflib.AnimationChannelTarget(node=channel.node, path=channel.path)
+            animation.channels.append(
+                pygltflib.AnimationChannel(
+                    sampler=self._append(animation.samplers, sampler), target=target
+                )
+            )
+        self._gltf.animations.append(animation)
+
+    def to_bytes(self) -> bytes:
+        """Return the GLB file."""
+        self._gltf.buffers = [pygltflib.Buffer(byteLength=len(self._blob))]
+        self._gltf.set_binary_blob(self._blob)
+        return b"".join(bytes(part) for part in self._gltf.save_to_bytes())
+
+    @staticmethod
+    def _append(items: list[Any], item: Any) -> int:
+        items.append(item)
+        return len(items) - 1
+
+
+def _state_bounds(accessor: pygltflib.Accessor, array: Array) -> None:
+    accessor.min = [float(value) for value in np.atleast_1d(array.min(axis=0))]
+    accessor.max = [float(value) for value in np.atleast_1d(array.max(axis=0))]
+
+
+def _material_named(name: str) -> pygltflib.Material:
+    look = MATERIALS[name]
+    return pygltflib.Material(
+        name=name,
+        pbrMetallicRoughness=pygltflib.PbrMetallicRoughness(
+            baseColorFactor=list(look.color), metallicFactor=0.0, roughnessFactor=look.roughness
+        ),
+        alphaMode="BLEND" if look.color[3] < 1 else "OPAQUE",
+        doubleSided=look.double_sided,
+    )
