@@ -1,0 +1,136 @@
+// REST calls of the viewer, and the addresses it links to.
+
+/** Anything numeric in here can be edited; see tissueFields. */
+export type Tissue = Record<string, unknown>;
+
+export interface MuscleInfo {
+  name: string;
+  kind?: string;
+  activation?: unknown;
+  force_scale?: number;
+  strength?: number;
+}
+
+export interface ActionUnitInfo {
+  name: string;
+  title?: string;
+  region?: string;
+  recipe?: unknown;
+  source?: string;
+}
+
+export interface EmotionInfo {
+  name: string;
+  recipe?: string;
+  source?: string;
+}
+
+export interface RigInfo {
+  id: string;
+  name: string;
+  muscles: MuscleInfo[];
+  action_units: ActionUnitInfo[];
+  emotions: EmotionInfo[];
+  tissue: Tissue;
+  mesh: Record<string, unknown>;
+}
+
+export interface SessionInfo {
+  id: string;
+  rig: string;
+  stream?: string;
+}
+
+/** An answer other than 2xx. `status` is 0 when there was no answer at all. */
+export class ApiError extends Error {
+  constructor(
+    readonly status: number,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
+export class Api {
+  /** @param base address of the page, e.g. `https://host/face/`; the API lies beside it under `api/`. */
+  constructor(private readonly base: string) {}
+
+  rig(rig: string): Promise<RigInfo> {
+    return this.json('GET', `api/rigs/${encodeURIComponent(rig)}`).then((body) =>
+      completeRig(rig, body as Partial<RigInfo>),
+    );
+  }
+
+  openSession(rig: string): Promise<SessionInfo> {
+    return this.json('POST', 'api/sessions', { rig }) as Promise<SessionInfo>;
+  }
+
+  session(id: string): Promise<SessionInfo> {
+    return this.json('GET', `api/sessions/${id}`) as Promise<SessionInfo>;
+  }
+
+  closeSession(id: string): Promise<unknown> {
+    return this.json('DELETE', `api/sessions/${id}`);
+  }
+
+  patchTissue(id: string, tissue: Tissue): Promise<{ rig?: string }> {
+    return this.json('PATCH', `api/sessions/${id}/tissue`, tissue) as Promise<{ rig?: string }>;
+  }
+
+  patchMuscle(id: string, muscle: string, fields: Record<string, number>): Promise<{ rig?: string }> {
+    const path = `api/sessions/${id}/muscles/${encodeURIComponent(muscle)}`;
+    return this.json('PATCH', path, fields) as Promise<{ rig?: string }>;
+  }
+
+  /** Absolute address of a path that the service named, or of one below the page. */
+  address(path: string): string {
+    const below = path.startsWith('/api/') ? path.slice(1) : path;
+    return new URL(below, this.base).href;
+  }
+
+  streamAddress(id: string): string {
+    return this.address(`api/sessions/${id}/stream`).replace(/^http/, 'ws');
+  }
+
+  private async json(method: string, path: string, body?: unknown): Promise<unknown> {
+    let response: Response;
+    try {
+      response = await fetch(this.address(path), {
+        method,
+        ...(body === undefined
+          ? {}
+          : { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json' } }),
+      });
+    } catch {
+      throw new ApiError(0, 'The service does not answer.');
+    }
+    const answer: unknown = await response.json().catch(() => null);
+    if (!response.ok) throw new ApiError(response.status, errorText(answer, response.status));
+    return answer;
+  }
+}
+
+function errorText(answer: unknown, status: number): string {
+  const message = (answer as { message?: unknown } | null)?.message;
+  return typeof message === 'string' ? message : `The service answered ${status}.`;
+}
+
+/** Older and newer services may leave fields out; the panels then show less, and nothing fails. */
+function completeRig(asked: string, body: Partial<RigInfo>): RigInfo {
+  return {
+    id: body.id ?? asked,
+    name: body.name ?? asked,
+    muscles: named<MuscleInfo>(body.muscles),
+    action_units: named<ActionUnitInfo>(body.action_units),
+    emotions: named<EmotionInfo>(body.emotions),
+    tissue: body.tissue ?? {},
+    mesh: body.mesh ?? {},
+  };
+}
+
+/** A list of named things, also when it comes as a mapping from name to thing. */
+function named<T extends { name: string }>(given: unknown): T[] {
+  if (Array.isArray(given)) return given as T[];
+  if (given === null || typeof given !== 'object') return [];
+  return Object.entries(given).map(([name, fields]) => ({ ...(fields as object), name }) as T);
+}

@@ -1,0 +1,158 @@
+// Keeps one WebSocket to a face alive: finds it, reconnects with growing pauses, hands on the newest frame.
+
+import type { Hello, StateMessage, SurfaceFrame, ErrorMessage } from './protocol';
+import { ackCommand, decodeFrame, readMessage, SUBPROTOCOL } from './protocol';
+
+export type Status = 'connecting' | 'open' | 'waiting' | 'closed';
+
+/** The part of WebSocket that is used; tests put their own in its place. */
+export interface Socket {
+  binaryType: BinaryType;
+  readyState: number;
+  onopen: ((event: Event) => void) | null;
+  onmessage: ((event: MessageEvent) => void) | null;
+  onclose: ((event: CloseEvent) => void) | null;
+  send(text: string): void;
+  close(code?: number, reason?: string): void;
+}
+
+export interface ConnectionOptions {
+  /** Address of the stream. Asked before each attempt, so that a face that is gone can be opened anew. */
+  locate: () => Promise<string>;
+  onHello: (hello: Hello) => void;
+  onState: (state: StateMessage) => void;
+  onError: (error: ErrorMessage) => void;
+  onStatus: (status: Status, detail: string) => void;
+  /** A newer frame lies ready for `takeFrame`. */
+  onFrameReady: () => void;
+  open?: (url: string) => Socket;
+  random?: () => number;
+}
+
+const FIRST_PAUSE_MS = 250;
+const LONGEST_PAUSE_MS = 10_000;
+/** A connection that lasted this long was a good one: the next pause is short again. */
+const STEADY_MS = 5_000;
+const SOCKET_OPEN = 1;
+const CLOSE_PROTOCOL_ERROR = 1002;
+
+export class Connection {
+  private socket: Socket | null = null;
+  private timer: ReturnType<typeof setTimeout> | null = null;
+  private failures = 0;
+  private openedAt = 0;
+  /** Counts attempts, so that an answer to an abandoned one is not acted upon. */
+  private attempt = 0;
+  private newest: ArrayBuffer | null = null;
+
+  constructor(private readonly options: ConnectionOptions) {}
+
+  /** Connect now, leaving whatever socket or pause there is. */
+  connect(): void {
+    this.leave();
+    void this.try(++this.attempt);
+  }
+
+  close(): void {
+    this.attempt++;
+    this.leave();
+    this.options.onStatus('closed', '');
+  }
+
+  /** Send a text frame; false if there is no open socket, in which case nothing is kept. */
+  send(text: string): boolean {
+    if (this.socket?.readyState !== SOCKET_OPEN) return false;
+    this.socket.send(text);
+    return true;
+  }
+
+  /**
+   * The newest frame since the last call, acknowledged; null if there is none.
+   * Acknowledging when a frame is used, not when it comes, paces the server to what is really drawn.
+   */
+  takeFrame(): SurfaceFrame | null {
+    if (this.newest === null) return null;
+    const frame = decodeFrame(this.newest);
+    this.newest = null;
+    this.send(ackCommand(frame.tick));
+    return frame;
+  }
+
+  private async try(attempt: number): Promise<void> {
+    this.options.onStatus('connecting', '');
+    let url: string;
+    try {
+      url = await this.options.locate();
+    } catch (error) {
+      if (attempt === this.attempt) this.pause(error instanceof Error ? error.message : '');
+      return;
+    }
+    if (attempt === this.attempt) this.open(url);
+  }
+
+  private open(url: string): void {
+    const make = this.options.open ?? ((address) => new WebSocket(address, SUBPROTOCOL) as Socket);
+    const socket = make(url);
+    this.socket = socket;
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => {
+      this.openedAt = Date.now();
+      this.options.onStatus('open', '');
+    };
+    socket.onmessage = (event) => {
+      this.receive(event.data as string | ArrayBuffer);
+    };
+    socket.onclose = (event) => {
+      if (this.socket === socket) this.lost(event);
+    };
+  }
+
+  private receive(data: string | ArrayBuffer): void {
+    if (typeof data !== 'string') {
+      const wasEmpty = this.newest === null;
+      this.newest = data;
+      if (wasEmpty) this.options.onFrameReady();
+      return;
+    }
+    const message = readMessage(data);
+    if (message.type === 'hello' || message.type === 'rig') this.options.onHello(message);
+    else if (message.type === 'state') this.options.onState(message);
+    else if (message.type === 'error') this.options.onError(message);
+  }
+
+  private lost(event: CloseEvent): void {
+    this.socket = null;
+    this.newest = null;
+    if (event.code === CLOSE_PROTOCOL_ERROR) {
+      this.options.onStatus('closed', event.reason || 'The service speaks another version. Reload the page.');
+      return;
+    }
+    if (this.openedAt > 0 && Date.now() - this.openedAt >= STEADY_MS) this.failures = 0;
+    this.openedAt = 0;
+    this.pause(event.reason);
+  }
+
+  private pause(reason: string): void {
+    const longest = Math.min(LONGEST_PAUSE_MS, FIRST_PAUSE_MS * 2 ** this.failures);
+    this.failures++;
+    // Half of the pause is chance, so that many viewers do not come back in the same instant.
+    const wait = longest * (0.5 + 0.5 * (this.options.random ?? Math.random)());
+    this.options.onStatus('waiting', reason);
+    this.timer = setTimeout(() => {
+      this.timer = null;
+      void this.try(++this.attempt);
+    }, wait);
+  }
+
+  private leave(): void {
+    if (this.timer !== null) clearTimeout(this.timer);
+    this.timer = null;
+    const socket = this.socket;
+    this.socket = null;
+    this.newest = null;
+    this.openedAt = 0;
+    if (socket === null) return;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.close(1000, 'The viewer left.');
+  }
+}

@@ -1,0 +1,253 @@
+// The face as three.js draws it: surface.glb in, poses of the tissue surface applied.
+
+import type { BufferAttribute, InterleavedBufferAttribute, Object3D , BufferGeometry, Group} from 'three';
+import { DynamicDrawUsage, Euler, Float32BufferAttribute, Mesh, Quaternion, Vector3 } from 'three';
+import type { GLTF } from 'three/addons/loaders/GLTFLoader.js';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { createMaterial } from './materials';
+import { MovingNormals } from './normals';
+import { Strands } from './strands';
+import type { Eyeball } from './surface';
+import { DrawnSurface } from './surface';
+
+/** One moment of the face; a decoded frame is one. */
+export interface FacePose {
+  vertexCount: number;
+  moved: ArrayLike<number>;
+  /** Three grid steps per moved point. */
+  displacements: ArrayLike<number>;
+  jawQuaternion: readonly [number, number, number, number];
+  /** [m] from the hinge's rest place. */
+  jawOffset: readonly [number, number, number];
+  /** Left yaw, left pitch, right yaw, right pitch [degrees]. */
+  gaze: readonly [number, number, number, number];
+  /** Yaw, pitch, roll [degrees]. */
+  head: readonly [number, number, number];
+}
+
+export type Triple = [number, number, number];
+
+interface SkinExtras {
+  map: { indptr: number; indices: number; weights: number; columns: number };
+  lids?: { vertices: number; eyes: number; clearance: number };
+  eyes?: { center: Triple; radius: number; bulge: number; bulge_radius: number; ball_radius_drawn: number }[];
+  landmarks?: Record<string, number>;
+  names?: string[];
+}
+
+interface RidingStrands {
+  strands: Strands;
+  attribute: BufferAttribute;
+}
+
+const MILLIMETRES = 1000;
+const DEFAULT_GRID = 2e-5;
+const RADIANS = Math.PI / 180;
+
+export class Face {
+  readonly root: Group;
+  readonly landmarks: Readonly<Record<string, number>>;
+  readonly names: readonly string[];
+  private readonly surface: DrawnSurface;
+  private readonly normals: MovingNormals;
+  private readonly skinPosition: BufferAttribute;
+  private readonly skinNormal: BufferAttribute;
+  private readonly tissueRest: Float32Array;
+  private readonly strands: RidingStrands[] = [];
+  private readonly nodes = new Map<string, Object3D>();
+  private readonly jawRest: Vector3;
+  private readonly grid: number;
+
+  /**
+   * Load the tissue surface of a rig.
+   * @throws Error when the file cannot be had, or has no skin with a map.
+   */
+  static async load(url: string): Promise<Face> {
+    const gltf = await new GLTFLoader().loadAsync(url);
+    return Face.build(gltf);
+  }
+
+  private static async build(gltf: GLTF): Promise<Face> {
+    const skin = meshes(gltf.scene).find((mesh) => mesh.userData.role === 'skin');
+    const extras = skin?.userData as Partial<SkinExtras> | undefined;
+    if (skin === undefined || extras?.map === undefined) {
+      throw new Error('The surface file has no mesh with role "skin" and a map; the service is of another version.');
+    }
+    const read = async (accessor: number): Promise<never> =>
+      plainArray((await gltf.parser.getDependency('accessor', accessor)) as BufferAttribute) as never;
+    const { map, lids } = extras;
+    const surface = new DrawnSurface(
+      plainArray(skin.geometry.getAttribute('position')) as Float32Array,
+      { indptr: await read(map.indptr), indices: await read(map.indices), weights: await read(map.weights), columns: map.columns },
+      lids === undefined
+        ? { vertices: new Uint16Array(), eyes: new Uint16Array(), clearance: new Float32Array() }
+        : { vertices: await read(lids.vertices), eyes: await read(lids.eyes), clearance: await read(lids.clearance) },
+      (extras.eyes ?? []).map(eyeball),
+    );
+    const roots = new Map<Mesh, ArrayLike<number>>();
+    for (const mesh of meshes(gltf.scene)) {
+      const accessor = mesh.userData.roots as number | undefined;
+      if (accessor !== undefined) roots.set(mesh, await read(accessor));
+    }
+    return new Face(gltf, skin, surface, roots);
+  }
+
+  private constructor(gltf: GLTF, skin: Mesh, surface: DrawnSurface, roots: Map<Mesh, ArrayLike<number>>) {
+    this.root = gltf.scene;
+    this.surface = surface;
+    this.grid = (gltf.asset.extras as { grid?: number } | undefined)?.grid ?? DEFAULT_GRID;
+    const extras = skin.userData as SkinExtras;
+    this.landmarks = extras.landmarks ?? {};
+    const tissue = meshes(this.root).find((mesh) => mesh.userData.role === 'tissue');
+    this.tissueRest =
+      tissue === undefined ? new Float32Array() : (plainArray(tissue.geometry.getAttribute('position')) as Float32Array);
+    this.names = (tissue?.userData as Partial<SkinExtras> | undefined)?.names ?? extras.names ?? [];
+    this.root.traverse((node) => this.nodes.set(nodeName(node), node));
+    this.jawRest = this.nodes.get('jaw')?.position.clone() ?? new Vector3();
+
+    const index = skin.geometry.getIndex();
+    if (index === null) throw new Error('The skin has no triangles.');
+    this.normals = new MovingNormals(
+      plainArray(index) as Uint32Array,
+      surface.rest,
+      plainArray(skin.geometry.getAttribute('normal')) as Float32Array,
+    );
+    const restSkin = { positions: surface.rest, normals: this.normals.normals };
+    for (const [mesh, ridden] of roots) {
+      const strands = new Strands(plainArray(mesh.geometry.getAttribute('position')) as Float32Array, ridden, restSkin);
+      this.strands.push({ strands, attribute: dynamic(mesh.geometry, 'position', strands.positions) });
+    }
+    this.normals.update(surface.positions, surface.dirty);
+    dress(this.root, surface.rest);
+    this.skinPosition = dynamic(skin.geometry, 'position', surface.positions);
+    this.skinNormal = dynamic(skin.geometry, 'normal', this.normals.normals);
+  }
+
+  /**
+   * Take on a pose; call `Scene.invalidate` after it.
+   * @throws Error when the pose is of another surface.
+   */
+  apply(pose: FacePose): void {
+    const points = this.tissueRest.length / 3;
+    if (pose.vertexCount !== points) {
+      throw new Error(`The frame has ${pose.vertexCount} points, the surface ${points}.`);
+    }
+    if (this.surface.apply(pose.moved, pose.displacements, this.grid)) this.refreshSkin();
+    this.turn('head', rotation(pose.head[0], pose.head[1], pose.head[2]));
+    this.turn('eye.L', rotation(pose.gaze[0], pose.gaze[1], 0));
+    this.turn('eye.R', rotation(pose.gaze[2], pose.gaze[3], 0));
+    this.turn('jaw', new Quaternion(...pose.jawQuaternion));
+    this.nodes.get('jaw')?.position.set(...pose.jawOffset).add(this.jawRest);
+  }
+
+  /** A streamed point, by name or index, where it is drawn [mm, head frame]. */
+  point(which: string | number): Triple {
+    const index = typeof which === 'number' ? which : this.names.indexOf(which);
+    if (!(index >= 0 && index * 3 < this.tissueRest.length)) throw new Error(`There is no surface point "${which}".`);
+    const displacement = this.surface.displacement(index);
+    return displacement.map((u, axis) => (this.origin('tissue', axis) + this.tissueRest[index * 3 + axis]! + u) * MILLIMETRES) as Triple;
+  }
+
+  /** A vertex as it lies in the buffer that is drawn [mm, head frame]. */
+  drawnVertex(index: number): Triple {
+    if (!(index >= 0 && index < this.skinPosition.count)) throw new Error(`There is no drawn vertex ${index}.`);
+    return [0, 1, 2].map(
+      (axis) => (this.origin('skin', axis) + this.skinPosition.array[index * 3 + axis]!) * MILLIMETRES,
+    ) as Triple;
+  }
+
+  dispose(): void {
+    for (const mesh of meshes(this.root)) {
+      mesh.geometry.dispose();
+      for (const material of [mesh.material].flat()) material.dispose();
+    }
+    this.root.removeFromParent();
+  }
+
+  /** Where a node's own origin lies in the head's frame at rest [m]. */
+  private origin(name: string, axis: number): number {
+    let sum = 0;
+    for (let node = this.nodes.get(name); node !== undefined && node !== this.root; node = node.parent ?? undefined) {
+      sum += node.position.getComponent(axis);
+    }
+    return sum;
+  }
+
+  private refreshSkin(): void {
+    this.normals.update(this.surface.positions, this.surface.dirty);
+    this.skinPosition.needsUpdate = true;
+    this.skinNormal.needsUpdate = true;
+    for (const { strands, attribute } of this.strands) {
+      strands.update({ positions: this.surface.positions, normals: this.normals.normals });
+      attribute.needsUpdate = true;
+    }
+  }
+
+  private turn(name: string, rotated: Quaternion): void {
+    this.nodes.get(name)?.quaternion.copy(rotated);
+  }
+}
+
+/** Yaw to the face's left, pitch up, roll to the left shoulder, in degrees. */
+function rotation(yaw: number, pitch: number, roll: number): Quaternion {
+  return new Quaternion().setFromEuler(new Euler(-pitch * RADIANS, yaw * RADIANS, -roll * RADIANS, 'YXZ'));
+}
+
+function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
+  return { center: eye.center, radius: eye.ball_radius_drawn, bulge: eye.bulge, bulgeRadius: eye.bulge_radius };
+}
+
+/** Give every mesh its material, its shadow and its place in the drawing order. */
+function dress(root: Object3D, skinRest: Float32Array): void {
+  const hasNeck = lowest(skinRest) < -0.15;
+  for (const mesh of meshes(root)) {
+    const kind = (mesh.userData.material as string | undefined) ?? 'skin';
+    mesh.visible = mesh.userData.role !== 'tissue';
+    mesh.material = createMaterial(kind, mesh.geometry.hasAttribute('color'), hasNeck && mesh.userData.role === 'skin');
+    mesh.castShadow = kind !== 'cornea';
+    mesh.receiveShadow = kind !== 'cornea';
+    mesh.frustumCulled = false;
+    // The skin is blended at the neck, so it must come after what is opaque and before the corneas.
+    mesh.renderOrder = kind === 'cornea' ? 2 : mesh.userData.role === 'skin' ? 1 : 0;
+    if (kind === 'skin') {
+      mesh.geometry.setAttribute('restPosition', mesh.geometry.getAttribute('position').clone());
+    }
+  }
+}
+
+function lowest(positions: Float32Array): number {
+  let y = Infinity;
+  for (let i = 1; i < positions.length; i += 3) y = Math.min(y, positions[i]!);
+  return y;
+}
+
+/** Put an array in place of an attribute, for values that change from frame to frame. */
+function dynamic(geometry: BufferGeometry, name: string, array: Float32Array): BufferAttribute {
+  const attribute = new Float32BufferAttribute(array, 3);
+  attribute.array = array;
+  attribute.setUsage(DynamicDrawUsage);
+  geometry.setAttribute(name, attribute);
+  return attribute;
+}
+
+function meshes(root: Object3D): Mesh<BufferGeometry>[] {
+  const found: Mesh<BufferGeometry>[] = [];
+  root.traverse((node) => {
+    if (node instanceof Mesh) found.push(node as Mesh<BufferGeometry>);
+  });
+  return found;
+}
+
+/** The loader takes dots out of names and keeps the original beside it. */
+function nodeName(node: Object3D): string {
+  return (node.userData.name as string | undefined) ?? node.name;
+}
+
+function plainArray(attribute: BufferAttribute | InterleavedBufferAttribute): ArrayLike<number> {
+  if (!('isInterleavedBufferAttribute' in attribute)) return attribute.array;
+  const out = new Float32Array(attribute.count * attribute.itemSize);
+  for (let i = 0; i < out.length; i++) {
+    out[i] = attribute.getComponent(Math.floor(i / attribute.itemSize), i % attribute.itemSize);
+  }
+  return out;
+}

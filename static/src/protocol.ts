@@ -1,0 +1,209 @@
+// The wire: decodes binary frames, reads the server's text messages, writes commands. Mirrors service/protocol.py.
+
+export const SUBPROTOCOL = 'risorius.v1';
+
+/** Layers of a face's timeline, from the one that yields first to the one that wins. */
+export const LAYERS = ['idle', 'mood', 'emotion', 'speech', 'puppet'] as const;
+export type Layer = (typeof LAYERS)[number];
+
+/** Where the fields of a surface frame lie, in bytes (little endian). */
+const OFFSET = {
+  kind: 0,
+  version: 1,
+  flags: 2,
+  tick: 4,
+  jawQuaternion: 8,
+  jawOffset: 24,
+  gaze: 36,
+  head: 52,
+  vertexCount: 64,
+  movedCount: 66,
+  bitmap: 68,
+} as const;
+
+const KIND_SURFACE = 1;
+const VERSION = 1;
+const FLAG_ASLEEP = 1;
+const BYTES_PER_DISPLACEMENT = 6;
+
+/** One tick of the face. Displacements are absolute, from rest, so any frame stands alone. */
+export interface SurfaceFrame {
+  kind: number;
+  version: number;
+  flags: number;
+  asleep: boolean;
+  /** Session tick at 60 Hz. */
+  tick: number;
+  /** Rotation of the jaw, x y z w. */
+  jawQuaternion: [number, number, number, number];
+  /** Translation of the jaw's hinge from rest [m]. */
+  jawOffset: [number, number, number];
+  /** Left yaw, left pitch, right yaw, right pitch [degrees]. */
+  gaze: [number, number, number, number];
+  /** Yaw, pitch, roll [degrees]. */
+  head: [number, number, number];
+  vertexCount: number;
+  /** Indices of the vertices that are off their rest position, ascending. */
+  moved: Uint16Array;
+  /** Grid steps from rest of each moved vertex, x y z after x y z. */
+  displacements: Int16Array;
+}
+
+export class ProtocolError extends Error {}
+
+/**
+ * Read one binary frame.
+ * @throws ProtocolError when the bytes are not a surface frame of a known version.
+ */
+export function decodeFrame(buffer: ArrayBuffer): SurfaceFrame {
+  if (buffer.byteLength < OFFSET.bitmap) {
+    throw new ProtocolError(
+      `A frame has at least ${OFFSET.bitmap} bytes, this one ${buffer.byteLength}.`,
+    );
+  }
+  const view = new DataView(buffer);
+  const kind = view.getUint8(OFFSET.kind);
+  const version = view.getUint8(OFFSET.version);
+  if (kind !== KIND_SURFACE || version !== VERSION) {
+    throw new ProtocolError(
+      `Frame of kind ${kind}, version ${version}; this viewer reads kind ${KIND_SURFACE}, version ${VERSION}. Reload the page.`,
+    );
+  }
+  const vertexCount = view.getUint16(OFFSET.vertexCount, true);
+  const movedCount = view.getUint16(OFFSET.movedCount, true);
+  const start = displacementsStart(vertexCount);
+  const end = start + movedCount * BYTES_PER_DISPLACEMENT;
+  if (buffer.byteLength < end) {
+    throw new ProtocolError(
+      `${movedCount} moved vertices of ${vertexCount} need ${end} bytes, the frame has ${buffer.byteLength}.`,
+    );
+  }
+  const flags = view.getUint16(OFFSET.flags, true);
+  const float = (index: number): number => view.getFloat32(OFFSET.jawQuaternion + 4 * index, true);
+  return {
+    kind,
+    version,
+    flags,
+    asleep: (flags & FLAG_ASLEEP) !== 0,
+    tick: view.getUint32(OFFSET.tick, true),
+    jawQuaternion: [float(0), float(1), float(2), float(3)],
+    jawOffset: [float(4), float(5), float(6)],
+    gaze: [float(7), float(8), float(9), float(10)],
+    head: [float(11), float(12), float(13)],
+    vertexCount,
+    moved: readBitmap(new Uint8Array(buffer, OFFSET.bitmap), vertexCount, movedCount),
+    displacements: new Int16Array(buffer, start, movedCount * 3),
+  };
+}
+
+/** The bitmap is padded to an even offset, so that the int16 values behind it are aligned. */
+function displacementsStart(vertexCount: number): number {
+  const end = OFFSET.bitmap + Math.ceil(vertexCount / 8);
+  return end + (end & 1);
+}
+
+function readBitmap(bitmap: Uint8Array, vertexCount: number, movedCount: number): Uint16Array {
+  const moved = new Uint16Array(movedCount);
+  let found = 0;
+  for (let byte = 0; byte * 8 < vertexCount; byte++) {
+    let bits = bitmap[byte]!;
+    for (let vertex = byte * 8; bits !== 0; vertex++, bits >>= 1) {
+      if ((bits & 1) !== 0) moved[found++] = vertex;
+    }
+  }
+  if (found !== movedCount) {
+    throw new ProtocolError(`The bitmap marks ${found} vertices, the header says ${movedCount}.`);
+  }
+  return moved;
+}
+
+export type Numbers = Record<string, number>;
+
+/** What a layer holds, or what all layers come to together. */
+export interface Held {
+  action_units?: Numbers;
+  muscles?: Numbers;
+  jaw?: Numbers;
+  gaze?: Numbers;
+  head?: Numbers;
+  emotion?: unknown;
+}
+
+export interface FaceState {
+  layers?: Record<string, Held>;
+  merged?: Held;
+}
+
+export interface Hello {
+  type: 'hello' | 'rig';
+  protocol?: string;
+  session: string;
+  rig: string;
+  surface: string;
+  vertices: number;
+  rate: number;
+  /** Grid step of the displacements [m]. */
+  grid: number;
+  tick: number;
+  state?: FaceState;
+}
+
+export interface StateMessage extends FaceState {
+  type: 'state';
+  state?: FaceState;
+}
+
+export interface ErrorMessage {
+  type: 'error';
+  error: string;
+  message: string;
+}
+
+export interface OtherMessage {
+  type: 'other';
+}
+
+export type ServerMessage = Hello | StateMessage | ErrorMessage | OtherMessage;
+
+/** Read a text frame; a type that this viewer does not know becomes `other`, and is left alone. */
+export function readMessage(text: string): ServerMessage {
+  const message = JSON.parse(text) as { type?: string };
+  switch (message.type) {
+    case 'hello':
+    case 'rig':
+    case 'state':
+    case 'error':
+      return message as ServerMessage;
+    default:
+      return { type: 'other' };
+  }
+}
+
+/** What one command may move; a layer keeps everything that is not named. */
+export interface Controls {
+  layer?: Layer;
+  fade?: number;
+  action_units?: Numbers;
+  muscles?: Numbers;
+  jaw?: Numbers;
+  gaze?: Numbers;
+  head?: Numbers;
+}
+
+/** Move what is named, as PATCH does. */
+export function controlsCommand(controls: Controls): string {
+  return JSON.stringify({ type: 'controls', ...controls });
+}
+
+/** Let go of everything that a layer holds, as an empty PUT does. */
+export function releaseCommand(layer: Layer, fade: number): string {
+  return JSON.stringify({ type: 'controls', layer, replace: true, fade });
+}
+
+export function emotionCommand(label: string, intensity: number, fadeIn: number): string {
+  return JSON.stringify({ type: 'emotion', label, intensity, fade_in: fadeIn });
+}
+
+export function ackCommand(tick: number): string {
+  return JSON.stringify({ type: 'ack', tick });
+}

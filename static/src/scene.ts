@@ -1,0 +1,147 @@
+// The stage: renderer, camera and views; draws only when something has changed.
+
+import type { Object3D } from 'three';
+import { ACESFilmicToneMapping, PCFShadowMap, PerspectiveCamera, Scene as ThreeScene, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { createBackdrop, createEnvironment, createLights } from './lights';
+
+/** Degrees that the camera stands to the face's left of straight in front. */
+const VIEW_ANGLES: Record<string, number> = { front: 0, 'three-quarter': 35, profile: 90 };
+/** A longer lens would flatten the face, a wider one spoils it [degrees]. */
+const FIELD_OF_VIEW = 22;
+const TARGET = new Vector3(0, -0.026, 0.012);
+const ELEVATION = (2 * Math.PI) / 180;
+/** What must be seen around the target [m], half of it: the head, and some air. */
+const HALF_HEIGHT = 0.152;
+const HALF_WIDTH = 0.122;
+
+export interface SceneOptions {
+  /** Let the visitor turn the camera. */
+  orbit: boolean;
+  pixelRatio: number | null;
+  view: string;
+  /** Called before each drawing, e.g. to apply the newest frame. */
+  beforeDraw: () => void;
+}
+
+export class Scene {
+  framesDrawn = 0;
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new ThreeScene();
+  private readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.05, 5);
+  private readonly controls: OrbitControls | null;
+  private readonly observer: ResizeObserver;
+  private view: string;
+  /** The camera stands where a view put it, so that resizing may frame it anew. */
+  private framed = true;
+  private scheduled = false;
+  private waiting: (() => void)[] = [];
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly options: SceneOptions,
+  ) {
+    this.view = options.view;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    this.renderer.toneMapping = ACESFilmicToneMapping;
+    this.renderer.toneMappingExposure = 1.0;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.setPixelRatio(options.pixelRatio ?? Math.min(window.devicePixelRatio, 2));
+    this.scene.add(createBackdrop(), createLights());
+    this.scene.environment = createEnvironment(this.renderer);
+    this.scene.environmentIntensity = 0.4;
+    this.controls = options.orbit ? this.createControls() : null;
+    this.observer = new ResizeObserver(() => {
+      this.resize();
+    });
+    this.observer.observe(canvas);
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.invalidate();
+    });
+    this.resize();
+  }
+
+  add(object: Object3D): void {
+    this.scene.add(object);
+    this.invalidate();
+  }
+
+  setView(name: string): void {
+    if (!(name in VIEW_ANGLES)) {
+      throw new Error(`There is no view "${name}"; known are ${Object.keys(VIEW_ANGLES).join(', ')}.`);
+    }
+    this.view = name;
+    this.frame();
+    this.invalidate();
+  }
+
+  /** Ask for a drawing with the next animation frame. */
+  invalidate(): void {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    requestAnimationFrame(() => {
+      this.scheduled = false;
+      this.draw();
+    });
+  }
+
+  /** Resolves after the next drawing, which this asks for. */
+  rendered(): Promise<void> {
+    return new Promise((resolve) => {
+      this.waiting.push(resolve);
+      this.invalidate();
+    });
+  }
+
+  private draw(): void {
+    this.options.beforeDraw();
+    this.renderer.render(this.scene, this.camera);
+    this.framesDrawn++;
+    const waiting = this.waiting;
+    this.waiting = [];
+    for (const resolve of waiting) resolve();
+  }
+
+  private createControls(): OrbitControls {
+    const controls = new OrbitControls(this.camera, this.canvas);
+    controls.target.copy(TARGET);
+    controls.minDistance = 0.25;
+    controls.maxDistance = 2.2;
+    controls.enablePan = false;
+    controls.rotateSpeed = 0.7;
+    controls.minPolarAngle = 0.25 * Math.PI;
+    controls.maxPolarAngle = 0.72 * Math.PI;
+    controls.addEventListener('start', () => {
+      this.framed = false;
+    });
+    controls.addEventListener('change', () => {
+      this.invalidate();
+    });
+    return controls;
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    if (this.framed) this.frame();
+    this.invalidate();
+  }
+
+  /** Stand where the whole head fits, whatever the window's shape. */
+  private frame(): void {
+    const angle = (VIEW_ANGLES[this.view]! * Math.PI) / 180;
+    const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const distance = Math.max(HALF_HEIGHT / slope, HALF_WIDTH / (slope * this.camera.aspect));
+    this.camera.position
+      .set(Math.sin(angle) * Math.cos(ELEVATION), Math.sin(ELEVATION), Math.cos(angle) * Math.cos(ELEVATION))
+      .multiplyScalar(distance)
+      .add(TARGET);
+    this.camera.lookAt(TARGET);
+    this.controls?.update();
+    this.framed = true;
+  }
+}

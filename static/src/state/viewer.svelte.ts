@@ -1,0 +1,49 @@
+// Everything the panels show, as one reactive object.
+
+import type { Held, Numbers } from '../protocol';
+import type { Rig } from './rig';
+
+/** Values that the visitor's own sliders hold. */
+export class Sliders {
+  actionUnits = $state<Numbers>({});
+  muscles = $state<Numbers>({});
+  jaw = $state<Numbers>({});
+  gaze = $state<Numbers>({});
+  head = $state<Numbers>({});
+
+  /** Show what a layer holds, e.g. of a session that was open before. */
+  take(held: Held): void {
+    this.actionUnits = { ...held.action_units };
+    this.muscles = { ...held.muscles };
+    this.jaw = numbersOnly(held.jaw);
+    this.gaze = numbersOnly(held.gaze);
+    this.head = numbersOnly(held.head);
+  }
+}
+
+export class ViewerState {
+  status = $state<'connecting' | 'open' | 'waiting' | 'closed'>('connecting');
+  detail = $state('');
+  session = $state('');
+  /** Name that the session was opened on, `standard` or `paper`. */
+  rigName = $state('');
+  rig = $state.raw<Rig | null>(null);
+  surfaceReady = $state(false);
+  tickRate = $state(0);
+  asleep = $state(false);
+  /** One sentence about the last thing that went wrong; empty when all is well. */
+  notice = $state('');
+  emotion = $state('');
+  emotionIntensity = $state(1);
+  view = $state('front');
+  /** What all layers come to together, also those that others write. */
+  merged = $state.raw<Held>({});
+  sliders = new Sliders();
+  /** Tissue and muscle numbers that were edited here, by `dermis.stiffness_low` or `muscle.force_scale`. */
+  edits = $state<Numbers>({});
+}
+
+function numbersOnly(values: object | undefined): Numbers {
+  const entries = Object.entries(values ?? {}).filter(([, value]) => typeof value === 'number');
+  return Object.fromEntries(entries) as Numbers;
+}
