@@ -1,0 +1,101 @@
+"""Small geometry shared by skin and parts: normals, spheres, pieces joined."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+
+Mesh = tuple[FloatArray, IntArray]
+"""Vertices [mm], shape (v, 3), and triangles, shape (t, 3)."""
+
+
+def vertex_normals(vertices: FloatArray, triangles: IntArray) -> FloatArray:
+    """Return unit normals (v, 3), the mean of the triangles around weighted by their areas."""
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    face = np.cross(b - a, c - a)
+    normal = np.column_stack(
+        [
+            np.bincount(triangles.ravel(), np.repeat(face[:, axis], 3), minlength=len(vertices))
+            for axis in range(3)
+        ]
+    )
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    return np.asarray(np.where(length > 1e-12, normal / np.maximum(length, 1e-12), [0.0, 0.0, 1.0]))
+
+
+def triangle_areas(vertices: FloatArray, triangles: IntArray) -> FloatArray:
+    """Return the areas [mm^2] of triangles, shape (t,)."""
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
+
+
+def without_slivers(vertices: FloatArray, triangles: IntArray) -> IntArray:
+    """Return the triangles that have an area."""
+    return triangles[triangle_areas(vertices, triangles) > 1e-9]
+
+
+def grid_triangles(rows: int, columns: int, *, closed: bool) -> IntArray:
+    """Return triangles over a grid of vertices stored row by row.
+
+    Facing: to the side from which columns run left to right and rows run downwards the mesh is
+    clockwise, so that rings about +z, rows going outwards, face +z.
+
+    Args:
+        rows: Vertex rows.
+        columns: Vertices per row.
+        closed: Whether the last column meets the first.
+    """
+    i, j = np.meshgrid(
+        np.arange(rows - 1), np.arange(columns if closed else columns - 1), indexing="ij"
+    )
+    here = (i * columns + j).ravel()
+    beside = (i * columns + (j + 1) % columns).ravel()
+    pairs = np.stack(
+        [
+            np.column_stack([here, here + columns, beside]),
+            np.column_stack([beside, here + columns, beside + columns]),
+        ],
+        axis=1,
+    )
+    return pairs.reshape(-1, 3)
+
+
+def unit_sphere(rows: int, columns: int) -> Mesh:
+    """Return a sphere of radius 1 about the origin, its poles on the z axis."""
+    polar = np.linspace(0, np.pi, rows + 1)[:, None]
+    around = np.linspace(0, 2 * np.pi, columns, endpoint=False)[None, :]
+    vertices = np.stack(
+        [
+            np.sin(polar) * np.cos(around),
+            np.sin(polar) * np.sin(around),
+            np.cos(polar) * np.ones_like(around),
+        ],
+        axis=2,
+    ).reshape(-1, 3)
+    triangles = grid_triangles(rows + 1, columns, closed=True)
+    return vertices, without_slivers(vertices, triangles)
+
+
+def joined(pieces: Sequence[Mesh]) -> Mesh:
+    """Return one mesh of several."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in pieces[:-1])])
+    return (
+        np.vstack([vertices for vertices, _ in pieces]),
+        np.vstack(
+            [triangles + start for (_, triangles), start in zip(pieces, starts, strict=True)]
+        ),
+    )
+
+
+def reflected(mesh: Mesh) -> Mesh:
+    """Return a mesh's mirror image in x = 0, still facing outwards."""
+    vertices, triangles = mesh
+    return vertices * [-1.0, 1.0, 1.0], triangles[:, ::-1].copy()
+
+
+def linear_rgb(color: FloatArray | Sequence[float]) -> FloatArray:
+    """Return colours painted for a screen (gamma 2.2) as linear light."""
+    return np.asarray(np.clip(np.asarray(color, dtype=float), 0.0, 1.0) ** 2.2)

@@ -1,0 +1,94 @@
+"""Graded levels of detail: fine faces where the face lives, coarse ones on scalp, neck and throat."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from .cage import mirrored_faces
+from .subdivision import Level
+from .tissue_surface import triangulated
+from .topology import Topology
+
+COARSE_REGIONS = ("scalp", "neck", "mouth_inner", "submental")
+
+
+def graded_triangles(
+    coarse: Level, fine: Level, positions: FloatArray, face_is_fine: BoolArray
+) -> tuple[IntArray, IntArray]:
+    """Return the triangles of a mesh that is fine in some places and coarse in the others.
+
+    A coarse face beside a fine one takes the shared edge's middle vertex into its outline, so there
+    are no cracks. The right half mirrors the left.
+
+    Args:
+        coarse: The coarser level.
+        fine: The next finer level.
+        positions: Limit positions of the finer level [mm], shape (d, 3).
+        face_is_fine: Which cage faces are drawn fine, shape (f,).
+
+    Returns:
+        Triangles over the finer level's vertices, shape (t, 3), and the cage face of each.
+    """
+    topology = coarse.topology
+    wanted = face_is_fine[coarse.parents]
+    left = np.arange(len(wanted)) < len(wanted) // 2
+    edge_is_fine = np.zeros(len(topology.edges), dtype=bool)
+    fine_edges = topology.face_edges[wanted]
+    edge_is_fine[fine_edges[fine_edges >= 0]] = True
+    sides = topology.face_edges
+    stitched = ~wanted & (edge_is_fine[sides] & (sides >= 0)).any(axis=1)
+
+    children = np.repeat(wanted & left, topology.corner_counts)
+    plain = ~wanted & ~stitched & left
+    pieces = [
+        _split(fine.topology.faces[children], fine.parents[children], positions),
+        _split(topology.faces[plain], coarse.parents[plain], positions),
+    ]
+    for face in np.flatnonzero(stitched & left):
+        fan = _best_fan(_outline(topology, face, edge_is_fine), positions)
+        pieces.append((fan, np.full(len(fan), coarse.parents[face])))
+    triangles = np.vstack([piece[0] for piece in pieces])
+    parents = np.concatenate([piece[1] for piece in pieces])
+    half = len(face_is_fine) // 2
+    return (
+        np.vstack([triangles, mirrored_faces(triangles, fine.mirror)]),
+        np.concatenate([parents, parents + half]),
+    )
+
+
+def _split(faces: IntArray, parents: IntArray, positions: FloatArray) -> tuple[IntArray, IntArray]:
+    return triangulated(faces, positions), np.repeat(parents, (faces >= 0).sum(axis=1) - 2)
+
+
+def _outline(topology: Topology, face: int, edge_is_fine: BoolArray) -> list[int]:
+    outline: list[int] = []
+    corners = zip(topology.faces[face], topology.face_edges[face], strict=True)
+    for corner, edge in corners:
+        if corner < 0:
+            continue
+        outline.append(int(corner))
+        if edge_is_fine[edge]:
+            outline.append(topology.vertex_count + int(edge))
+    return outline
+
+
+def _best_fan(outline: Sequence[int], positions: FloatArray) -> IntArray:
+    """Return the fan over an outline whose smallest angle is the largest."""
+    size = len(outline)
+    starts = np.arange(size)
+    ring = np.array(outline)[(starts[:, None] + starts) % size]
+    fans = np.stack([ring[:, [0, k, k + 1]] for k in range(1, size - 1)], axis=1)
+    worst = smallest_angles(positions[fans]).min(axis=1)
+    return np.asarray(fans[int(np.argmax(worst))])
+
+
+def smallest_angles(corners: FloatArray) -> FloatArray:
+    """Return the smallest angle of triangles given by their corners (..., 3, 3), radians."""
+    to_next = np.roll(corners, -1, axis=-2) - corners
+    to_last = np.roll(corners, 1, axis=-2) - corners
+    product = np.linalg.norm(to_next, axis=-1) * np.linalg.norm(to_last, axis=-1)
+    cosine = (to_next * to_last).sum(axis=-1) / np.maximum(product, 1e-12)
+    return np.asarray(np.arccos(np.clip(cosine, -1, 1)).min(axis=-1))

@@ -1,0 +1,55 @@
+"""Anthropometric landmarks: which point of the cage stands for each.
+
+Names after Farkas, "Anthropometry of the Head and Face", 1994.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import IntArray
+from .cage import Cage
+
+MIDLINE = {
+    "v": "T3_0",  # vertex, the top of the head
+    "tr": "G4_0",  # trichion, the hairline
+    "g": "G1_0",  # glabella
+    "n": "b2_0",  # sellion, the root of the nose
+    "prn": "b7_0",  # pronasale, its tip
+    "sn": "M4_0",  # subnasale
+    "ls": "M2_0",  # labiale superius, border of the upper lip
+    "sto": "M0_0",  # stomion
+    "li": "M2_10",  # labiale inferius
+    "sl": "M4_10",  # sublabiale, the fold over the chin
+    "pg": "C4_10",  # pogonion
+    "gn": "C5_10",  # gnathion, the chin's lowest point
+    "op": "W5_13",  # opisthocranion
+}
+PAIRED = {
+    "en": "E1_0",  # inner corner of the eye
+    "ex": "E1_8",  # outer corner
+    "ps": "E1_4",  # middle of the upper lid's edge
+    "pi": "E1_12",  # middle of the lower lid's edge
+    "al": "A7",  # widest point of the nose
+    "ch": "M1_5",  # corner of the mouth
+    "zy": "W10_1",  # cheekbone
+    "go": "W14_1",  # angle of the jaw
+    "eu": "W3_6",  # widest point of the head
+}
+
+
+def landmark_vertices(cage: Cage, drawn: IntArray) -> dict[str, int]:
+    """Return the drawn vertex of each landmark that the mesh has ("prn", "ch.L", "ch.R").
+
+    Args:
+        cage: The cage.
+        drawn: Level vertex of each drawn vertex, shape (d,).
+    """
+    wanted = {name: cage.left[point] for name, point in MIDLINE.items()}
+    for name, point in PAIRED.items():
+        left = cage.left[point]
+        wanted[f"{name}.L"] = left
+        wanted[f"{name}.R"] = int(cage.mirror[left])
+    place = np.full(max(int(drawn.max()) + 1, len(cage.points)), -1)
+    place[drawn] = np.arange(len(drawn))
+    return {name: int(place[point]) for name, point in wanted.items() if place[point] >= 0}

@@ -1,0 +1,152 @@
+"""The drawn skin: a level of the limit surface, coloured, carried by the tissue, kept off the eyes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import FloatArray, IntArray
+from .cage import Cage
+from .geometry import vertex_normals
+from .graded import COARSE_REGIONS, graded_triangles
+from .head import DrawnSurface, Eye, LidContact
+from .paint import Paint
+from .subdivision import Limit
+from .surface_map import surface_map
+from .tissue_surface import symmetric_triangles
+
+LEVELS = {"low": 0, "medium": 1, "high": 2}
+"""Refinements of the cage where the face lives; scalp, neck and throat have one fewer."""
+
+# Height that the drawn lids keep over ball and cornea, mm; the first that names a vertex counts.
+LID_CLEARANCE = {"lid_margin": 0.22, "eyelid": 0.5, "orbital": 0.6, "lid_inner": 0.12}
+LEAST_CLEARANCE = 0.06
+"""Height below which a vertex is moved at rest already, mm."""
+
+
+@dataclass(frozen=True, eq=False)
+class SkinMesh:
+    """A level of detail of the skin before it is coloured.
+
+    Attributes:
+        level: Level of the vertices.
+        indices: Vertex of that level (and of all finer ones) for each drawn vertex, shape (d,).
+        vertices: Positions [mm], shape (d, 3).
+        triangles: Shape (t, 3).
+        cage_faces: Cage face that each triangle belongs to, shape (t,).
+    """
+
+    level: int
+    indices: IntArray
+    vertices: FloatArray
+    triangles: IntArray
+    cage_faces: IntArray
+
+
+def skin_mesh(cage: Cage, limit: Limit, points: FloatArray, level: int) -> SkinMesh:
+    """Return the skin at a level of detail.
+
+    Args:
+        cage: The cage.
+        limit: Its limit surface.
+        points: The cage's points [mm], shape (v, 3).
+        level: 0, 1 or 2.
+    """
+    vertices = limit.positions(points, level)
+    if level == 0:
+        triangles = symmetric_triangles(cage.faces, points, cage.mirror)
+        left = np.repeat(np.arange(len(cage.faces)), (cage.faces >= 0).sum(axis=1) - 2)
+        return SkinMesh(0, np.arange(len(points)), vertices, triangles, left)
+    is_fine = ~np.isin(np.array(cage.regions), COARSE_REGIONS)
+    triangles, faces = graded_triangles(
+        limit.levels[level - 1], limit.levels[level], vertices, is_fine
+    )
+    used, renumbered = np.unique(triangles, return_inverse=True)
+    return SkinMesh(level, used, vertices[used], renumbered.reshape(-1, 3), faces)
+
+
+def drawn_surface(
+    cage: Cage,
+    limit: Limit,
+    mesh: SkinMesh,
+    paint: Paint,
+    surface_points: IntArray,
+    eyes: Sequence[Eye],
+) -> DrawnSurface:
+    """Return the skin to draw.
+
+    Args:
+        cage: The cage.
+        limit: Its limit surface.
+        mesh: The level of detail.
+        paint: Colours of the finest level.
+        surface_points: Cage index of each tissue point, shape (s,).
+        eyes: The eyes to stay clear of.
+    """
+    carried = surface_map(limit, mesh.level, mesh.indices, surface_points)
+    return _finished(cage, mesh, paint, carried, eyes)
+
+
+def tissue_as_drawn(cage: Cage, mesh: SkinMesh, paint: Paint, eyes: Sequence[Eye]) -> DrawnSurface:
+    """Return a tissue surface drawn as it is: its own vertices, moved one to one."""
+    identity = sp.csr_array(sp.eye_array(len(mesh.vertices)))
+    return _finished(cage, mesh, paint, identity, eyes)
+
+
+def _finished(
+    cage: Cage, mesh: SkinMesh, paint: Paint, carried: sp.csr_array, eyes: Sequence[Eye]
+) -> DrawnSurface:
+    names = tuple(sorted(set(cage.regions)))
+    regions = vertex_regions(cage, mesh, names)
+    vertices, lids = _lids_at_rest(cage, mesh, eyes)
+    return DrawnSurface(
+        vertices=vertices,
+        normals=vertex_normals(vertices, mesh.triangles),
+        triangles=mesh.triangles,
+        colors=paint.colors[mesh.indices],
+        hair=paint.hair[mesh.indices],
+        regions=regions,
+        region_names=names,
+        map=carried,
+        lids=lids,
+    )
+
+
+def vertex_regions(cage: Cage, mesh: SkinMesh, names: Sequence[str]) -> IntArray:
+    """Return the region that most triangles around each vertex belong to, shape (d,)."""
+    number = {name: index for index, name in enumerate(names)}
+    region = np.array([number[name] for name in cage.regions])[mesh.cage_faces]
+    shape = (len(mesh.vertices), len(names))
+    votes = np.zeros(shape)
+    np.add.at(votes, (mesh.triangles, region[:, None]), 1.0)
+    return np.asarray(votes.argmax(axis=1))
+
+
+def _lids_at_rest(cage: Cage, mesh: SkinMesh, eyes: Sequence[Eye]) -> tuple[FloatArray, LidContact]:
+    """Return the vertices moved off the eyes and the contact that leaves them there at rest."""
+    clearance = np.zeros(len(mesh.vertices))
+    regions = np.array(cage.regions)[mesh.cage_faces]
+    for kind, height in LID_CLEARANCE.items():
+        named = np.char.endswith(regions, f"_{kind}")
+        chosen = np.unique(mesh.triangles[named])
+        clearance[chosen[clearance[chosen] == 0]] = height
+    lid_vertices = np.flatnonzero(clearance)
+    side = (mesh.vertices[lid_vertices, 0] < 0).astype(np.int64)
+    offsets = mesh.vertices[lid_vertices] - np.array([eye.center for eye in eyes])[side]
+    in_front = offsets[:, 2] > 0
+    lid_vertices, side = lid_vertices[in_front], side[in_front]
+
+    floor = LidContact(lid_vertices, side, np.full(len(side), LEAST_CLEARANCE))
+    vertices = mesh.vertices
+    for _ in range(4):  # the bulge under a vertex changes as it is pushed out
+        vertices = floor.project(vertices, eyes)
+    offsets = vertices[lid_vertices] - np.array([eye.center for eye in eyes])[side]
+    radius = np.array([eye.radius for eye in eyes])[side]
+    bare = LidContact(lid_vertices, side, np.zeros(len(side)))
+    height = np.linalg.norm(offsets, axis=1) - bare.least_radius(offsets, radius)
+    # Nothing may move at rest, so no vertex is asked for more height than it has.
+    asked = np.minimum(clearance[lid_vertices], height - 1e-9)
+    return vertices, LidContact(lid_vertices, side, asked)

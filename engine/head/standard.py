@@ -1,0 +1,185 @@
+"""The heads that come with the engine: the standard one at three levels, and the paper's mask."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..cache import cached_arrays
+from ..errors import UnknownName
+from .cage import Cage, build_cage
+from .fairing import faired_points
+from .head import Eye, Head
+from .landmarks import landmark_vertices
+from .paint import Paint, painted
+from .parts import head_parts
+from .patches import EYE_CENTER, EYE_RADIUS
+from .skin import LEVELS, DrawnSurface, SkinMesh, drawn_surface, skin_mesh, tissue_as_drawn
+from .storage import head_from_arrays, head_to_arrays, source_key
+from .subdivision import Limit, cage_level, limit_surface
+from .tissue_surface import TissueSurface, face_sheet, symmetric_triangles, tissue_surface
+from .topology import Topology
+
+# Semi-sharp creases along rows of the cage; chosen by eye.
+CREASES = (
+    ([f"E2_{spoke}" for spoke in range(1, 8)], 0.85),  # crease of the upper lid
+    ([f"E1_{spoke % 16}" for spoke in range(17)], 0.6),  # front edge of the lids
+    ([f"M2_{spoke}" for spoke in range(11)], 0.35),  # border of the lips
+    (["b5_3", "b6_3", "M4_3", "M4_2"], 0.5),  # crease round the wing of the nose
+)
+
+PAPER_NECK_ROWS = ("Q1", "Q2")
+PAPER_NECK_POINTS = 10
+"""Points of each neck row, from the midline, that the paper's mask takes in."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sculpture:
+    """The built-in head before it becomes tissue and skin.
+
+    Attributes:
+        cage: The authored cage.
+        points: Its faired points [mm], shape (v, 3).
+        limit: The smooth surface through them.
+        paint: Colours of the finest level.
+        eyes: Left and right eyeball.
+    """
+
+    cage: Cage
+    points: FloatArray
+    limit: Limit
+    paint: Paint
+    eyes: tuple[Eye, Eye]
+
+
+def standard_head(level: str = "high") -> Head:
+    """Return the built-in head.
+
+    Args:
+        level: Detail of the drawn skin: "low" (2,280 triangles), "medium" (5,824) or "high"
+            (23,120). The tissue is the same at all levels.
+
+    Raises:
+        UnknownName: There is no such level.
+    """
+    if level not in LEVELS:
+        raise UnknownName("level of detail", level, LEVELS)
+    return _cached(f"standard-{level}", lambda: _standard(level))
+
+
+def paper_head() -> Head:
+    """Return the head at the size of Zhang, Prakash, Sung 2001: a mask of about 1,280 triangles.
+
+    It is drawn as it is simulated, triangle by triangle.
+    """
+    return _cached("paper", _paper)
+
+
+def sculpt() -> Sculpture:
+    """Return the built-in head's cage, surface, colours and eyes."""
+    cage = build_cage()
+    points = faired_points(cage)
+    limit = limit_surface(cage_level(*_creased(cage)))
+    left = Eye(EYE_CENTER.copy(), EYE_RADIUS)
+    right = Eye(EYE_CENTER * [-1.0, 1.0, 1.0], EYE_RADIUS)
+    finest = limit.positions(points, 2)
+    return Sculpture(cage, points, limit, painted(finest), (left, right))
+
+
+def _cached(name: str, build: Callable[[], Head]) -> Head:
+    arrays = cached_arrays("head", source_key(name), lambda: head_to_arrays(build()))
+    return head_from_arrays(arrays)
+
+
+def _standard(level: str) -> Head:
+    sculpture = sculpt()
+    cage, limit = sculpture.cage, sculpture.limit
+    tissue = tissue_surface(cage, sculpture.points, face_sheet(cage))
+    mesh = skin_mesh(cage, limit, sculpture.points, LEVELS[level])
+    drawn = drawn_surface(cage, limit, mesh, sculpture.paint, tissue.cage_points, sculpture.eyes)
+    return _assembled("standard", sculpture, tissue, mesh, drawn)
+
+
+def _paper() -> Head:
+    sculpture = sculpt()
+    cage = sculpture.cage
+    quads = tissue_surface(cage, sculpture.points, _mask(cage))
+    tissue = _in_triangles(quads, sculpture.points[quads.cage_points])
+    mesh = SkinMesh(
+        level=0,
+        indices=tissue.cage_points,
+        vertices=sculpture.points[tissue.cage_points],
+        triangles=tissue.triangles,
+        cage_faces=tissue.triangle_faces,
+    )
+    drawn = tissue_as_drawn(cage, mesh, sculpture.paint, sculpture.eyes)
+    return _assembled("paper", sculpture, tissue, mesh, drawn)
+
+
+def _assembled(
+    name: str,
+    sculpture: Sculpture,
+    tissue: TissueSurface,
+    mesh: SkinMesh,
+    drawn: DrawnSurface,
+) -> Head:
+    cage = sculpture.cage
+    sided = cage.sided_names
+    return Head(
+        name=name,
+        points=sculpture.points[tissue.cage_points],
+        names=tuple(sided[index] for index in tissue.cage_points),
+        sheet_count=tissue.sheet_count,
+        polygons=tissue.polygons,
+        polygon_regions=tissue.polygon_regions,
+        triangles=tissue.triangles,
+        mirror=tissue.mirror,
+        fixed=tissue.fixed,
+        jaw_weight=tissue.jaw_weight,
+        depth=tissue.depth,
+        anchor_weight=tissue.anchor_weight,
+        follow=tissue.follow,
+        follow_jaw=tissue.follow_jaw,
+        drawn=drawn,
+        parts=head_parts(drawn),
+        eyes=sculpture.eyes,
+        landmarks=landmark_vertices(cage, mesh.indices),
+    )
+
+
+def _creased(cage: Cage) -> tuple[Topology, IntArray, FloatArray]:
+    """Return the cage's topology, mirror and crease of each edge."""
+    topology = Topology.of(cage.faces, len(cage.points))
+    sharpness = np.zeros(len(topology.edges))
+    for names, value in CREASES:
+        left = np.array([cage.left[name] for name in names])
+        for side in (left, cage.mirror[left]):
+            sharpness[topology.edge_index(side[:-1], side[1:])] = value
+    return topology, cage.mirror, sharpness
+
+
+def _mask(cage: Cage) -> BoolArray:
+    """Return the cage faces of the paper's mask: the sheet and the front of the neck, shape (f,)."""
+    chosen = face_sheet(cage)
+    inside = np.zeros(len(cage.points), dtype=bool)
+    inside[np.unique(cage.faces[chosen])] = True
+    for row in PAPER_NECK_ROWS:
+        for index in range(PAPER_NECK_POINTS):
+            left = cage.left[f"{row}_{index}"]
+            inside[[left, cage.mirror[left]]] = True
+    neck = np.array(cage.regions) == "neck"
+    return np.asarray(chosen | (neck & (inside[cage.faces] | (cage.faces < 0)).all(axis=1)))
+
+
+def _in_triangles(tissue: TissueSurface, points: FloatArray) -> TissueSurface:
+    """Return the same tissue with its sheet's quads split in two."""
+    triangles = symmetric_triangles(tissue.polygons, points, tissue.mirror)
+    pieces = (tissue.polygons >= 0).sum(axis=1) - 2
+    return replace(
+        tissue,
+        polygons=np.column_stack([triangles, np.full(len(triangles), -1)]),
+        polygon_regions=tuple(np.repeat(tissue.polygon_regions, pieces).tolist()),
+    )

@@ -1,0 +1,112 @@
+"""A head as plain arrays and back, so that it can be kept in the cache."""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from ..cache import content_key
+from .head import DrawnSurface, Eye, Head, LidContact, Part
+
+Arrays = dict[str, npt.NDArray[np.generic]]
+
+HEAD_ARRAYS = (
+    "points", "polygons", "triangles", "mirror", "fixed", "jaw_weight", "depth", "anchor_weight",
+    "follow_jaw",
+)  # fmt: skip
+DRAWN_ARRAYS = ("vertices", "normals", "triangles", "colors", "hair", "regions")
+LID_ARRAYS = ("vertices", "eyes", "clearance")
+PART_ARRAYS = ("vertices", "normals", "triangles", "colors", "roots")
+
+
+def source_key(*parts: object) -> str:
+    """Return a hash of `parts`, of the authored data and of all code that makes heads from it."""
+    files = sorted(_source_files(resources.files(__package__)))
+    return content_key(*parts, *(content for _, content in files))
+
+
+def _source_files(folder: resources.abc.Traversable) -> list[tuple[str, bytes]]:
+    found: list[tuple[str, bytes]] = []
+    for entry in folder.iterdir():
+        if entry.is_dir() and entry.name != "__pycache__":
+            found += _source_files(entry)
+        elif entry.name.endswith((".py", ".json")):
+            found.append((entry.name, entry.read_bytes()))
+    return found
+
+
+def head_to_arrays(head: Head) -> Arrays:
+    """Return every array of `head` under a name of its own, and the rest as JSON text."""
+    drawn = head.drawn
+    arrays: Arrays = {name: getattr(head, name) for name in HEAD_ARRAYS}
+    arrays |= _matrix_to_arrays("follow", head.follow)
+    arrays |= {f"drawn.{name}": getattr(drawn, name) for name in DRAWN_ARRAYS}
+    arrays |= _matrix_to_arrays("drawn.map", drawn.map)
+    arrays |= {f"lids.{name}": getattr(drawn.lids, name) for name in LID_ARRAYS}
+    for index, part in enumerate(head.parts):
+        for name in PART_ARRAYS:
+            values = getattr(part, name)
+            if values is not None:
+                arrays[f"part{index}.{name}"] = values
+    rest = {
+        "name": head.name,
+        "names": head.names,
+        "sheet_count": head.sheet_count,
+        "polygon_regions": head.polygon_regions,
+        "region_names": drawn.region_names,
+        "parts": [(part.name, part.material, part.follows) for part in head.parts],
+        "eyes": [(eye.center.tolist(), eye.radius) for eye in head.eyes],
+        "landmarks": dict(head.landmarks),
+    }
+    arrays["rest"] = np.frombuffer(json.dumps(rest).encode(), dtype=np.uint8)
+    return arrays
+
+
+def head_from_arrays(arrays: Arrays) -> Head:
+    """Return the head that `head_to_arrays` took apart."""
+    rest = json.loads(arrays["rest"].tobytes())
+    drawn = DrawnSurface(
+        **{name: arrays[f"drawn.{name}"] for name in DRAWN_ARRAYS},  # type: ignore[arg-type]
+        region_names=tuple(rest["region_names"]),
+        map=_matrix_from_arrays("drawn.map", arrays),
+        lids=LidContact(**{name: arrays[f"lids.{name}"] for name in LID_ARRAYS}),  # type: ignore[arg-type]
+    )
+    parts = tuple(
+        Part(
+            name,
+            material=material,
+            follows=follows,
+            **{key: arrays.get(f"part{index}.{key}") for key in PART_ARRAYS},  # type: ignore[arg-type]
+        )
+        for index, (name, material, follows) in enumerate(rest["parts"])
+    )
+    return Head(
+        name=rest["name"],
+        names=tuple(rest["names"]),
+        sheet_count=rest["sheet_count"],
+        polygon_regions=tuple(rest["polygon_regions"]),
+        follow=_matrix_from_arrays("follow", arrays),
+        drawn=drawn,
+        parts=parts,
+        eyes=tuple(Eye(np.array(center), radius) for center, radius in rest["eyes"]),
+        landmarks=rest["landmarks"],
+        **{name: arrays[name] for name in HEAD_ARRAYS},  # type: ignore[arg-type]
+    )
+
+
+def _matrix_to_arrays(name: str, matrix: sp.csr_array) -> Arrays:
+    return {
+        f"{name}.data": matrix.data,
+        f"{name}.indices": matrix.indices,
+        f"{name}.indptr": matrix.indptr,
+        f"{name}.shape": np.array(matrix.shape),
+    }
+
+
+def _matrix_from_arrays(name: str, arrays: Arrays) -> sp.csr_array:
+    values = tuple(arrays[f"{name}.{key}"] for key in ("data", "indices", "indptr"))
+    return sp.csr_array(values, shape=tuple(arrays[f"{name}.shape"]))

@@ -1,0 +1,75 @@
+"""The sparse map that carries the tissue's displacement to the drawn skin."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import FloatArray, IntArray
+from .subdivision import Limit
+
+LOST_WEIGHT = 0.005
+"""Sum of the sizes of the weights that each row may lose; 0.01 mm of error per 2 mm of difference
+between far points and near ones."""
+MOST_WEIGHTS = 128
+"""A row keeps at most this many; 35 are usual."""
+
+
+def surface_map(
+    limit: Limit,
+    level: int,
+    drawn_vertices: IntArray,
+    surface_points: IntArray,
+) -> sp.csr_array:
+    """Return drawn displacement from tissue displacement, sparse (d, s).
+
+    Exact subdivision is limit mask times subdivision times the inverse of interpolation; the
+    inverse reaches everywhere but decays by about 4 with each ring, so its far tail is left out.
+    Cage points outside the tissue (scalp, neck) count as unmoved.
+
+    Args:
+        limit: The interpolating surface.
+        level: Level of the drawn vertices.
+        drawn_vertices: Their indices in that level, shape (d,).
+        surface_points: Cage index of each tissue point, shape (s,).
+    """
+    return pruned(exact_map(limit, level, drawn_vertices, surface_points))
+
+
+def exact_map(
+    limit: Limit, level: int, drawn_vertices: IntArray, surface_points: IntArray
+) -> FloatArray:
+    """Return the same map with every weight, dense (d, s)."""
+    cage_size = limit.to_limit[0].shape[0]
+    unit = np.zeros((cage_size, len(surface_points)))
+    unit[surface_points, np.arange(len(surface_points))] = 1.0
+    control = limit.solver.solve(unit)
+    return np.asarray(limit.to_limit[level][drawn_vertices] @ control)
+
+
+def pruned(exact: FloatArray) -> sp.csr_array:
+    """Return `exact` (d, s) without the tail of each row, each row's sum kept.
+
+    The sum is what a row makes of a displacement common to all points; what pruning takes is given
+    back in proportion to the weights that stay.
+    """
+    rows = np.arange(len(exact))[:, None]
+    size = np.abs(exact)
+    width = min(MOST_WEIGHTS, exact.shape[1])
+    columns = np.argpartition(-size, width - 1, axis=1)[:, :width]
+    order = np.argsort(-size[rows, columns], axis=1, kind="stable")
+    columns = columns[rows, order]
+    largest = size[rows, columns]
+    # What would be lost by stopping before each weight.
+    tail = size.sum(axis=1, keepdims=True) - largest.cumsum(axis=1) + largest
+    weights = np.where(tail > LOST_WEIGHT, exact[rows, columns], 0.0)
+    lost = exact.sum(axis=1) - weights.sum(axis=1)
+    kept = np.abs(weights)
+    weights += kept * (lost / np.maximum(kept.sum(axis=1), 1e-12))[:, None]
+    matrix = sp.csr_array(
+        (weights.ravel(), (np.broadcast_to(rows, columns.shape).ravel(), columns.ravel())),
+        shape=exact.shape,
+    )
+    matrix.eliminate_zeros()
+    matrix.sort_indices()
+    return matrix
