@@ -1,5 +1,8 @@
 """glTF output: surface, rig, face and clip files; the only package that knows the format."""
 
+from .clip import clip_to_glb
+from .face import face_to_glb
+from .rig import rig_to_glb
 from .surface import surface_to_glb
 
-__all__ = ["surface_to_glb"]
+__all__ = ["clip_to_glb", "face_to_glb", "rig_to_glb", "surface_to_glb"]

@@ -41,13 +41,17 @@ def ride_roots(
         normals: Its area-weighted unit normals, shape (d, 3).
     """
     roots = roots_of(part)
-    before, after = rest_normals[roots], normals[roots]
+    arm = part.vertices - rest[roots]
+    return vertices[roots] + turn_with(rest_normals[roots], normals[roots], arm)
+
+
+def turn_with(before: FloatArray, after: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return `vectors`, each turned as its unit normal turned from `before` to `after`; (v, 3)."""
     axis = np.cross(before, after)
     cosine = np.einsum("ij,ij->i", before, after)[:, None]
-    arm = part.vertices - rest[roots]
-    along = np.einsum("ij,ij->i", axis, arm)[:, None]
-    turned = cosine * arm + np.cross(axis, arm) + axis * (along / np.maximum(1.0 + cosine, 0.05))
-    return np.asarray(vertices[roots] + turned)
+    along = np.einsum("ij,ij->i", axis, vectors)[:, None]
+    across = np.cross(axis, vectors)
+    return np.asarray(cosine * vectors + across + axis * along / np.maximum(1 + cosine, 0.05))
 
 
 def roots_of(part: Part) -> IntArray:
@@ -134,8 +138,14 @@ class DrawnFace:
         return np.concatenate([vertices, *self.ride(vertices, self.skin_normals(vertices))])
 
     def rest_positions(self) -> FloatArray:
-        """Return skin, then strands [mm] at rest, stacked as in `positions`."""
-        return np.concatenate([self.head.drawn.vertices, *(part.vertices for part in self.strands)])
+        """Return skin, then strands [mm] of undisplaced tissue, stacked as in `positions`."""
+        return self.positions(np.zeros_like(self.head.points))
+
+    def pieces(self) -> list[slice]:
+        """Return where the skin and each strand part lie in `positions`."""
+        counts = [len(self.head.drawn.vertices), *(len(part.vertices) for part in self.strands)]
+        stops = np.cumsum(counts).tolist()
+        return [slice(stop - count, stop) for stop, count in zip(stops, counts, strict=True)]
 
     def normal_change(self, vertices: FloatArray) -> FloatArray:
         """Return how the skin's normals differ from rest, shape (d, 3)."""

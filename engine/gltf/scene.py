@@ -73,9 +73,16 @@ def add_pivot(
     return Pivot(node, origin)
 
 
-def add_rigid_parts(builder: GlbBuilder, head: Head, pivots: Mapping[str, Pivot]) -> None:
-    """Add the parts that move with a bone or an eye, relative to their pivots."""
+def add_rigid_parts(
+    builder: GlbBuilder, head: Head, pivots: Mapping[str, Pivot], *, skip: str | None = None
+) -> None:
+    """Add the parts that move with a bone or an eye, relative to their pivots.
+
+    Those that follow `skip` are left out, for a caller that has more to say about them.
+    """
     for part in rigid_parts(head):
+        if part.follows == skip:
+            continue
         pivot = pivots[part.follows]
         attributes = part_attributes(part, origin=pivot.origin)
         primitive = builder.primitive(attributes, part.triangles, material=part.material)

@@ -1,0 +1,136 @@
+"""The clip file: a performance as few morph targets, their weights over time and moving nodes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Float32Array, FloatArray, IntArray
+from .basis import SHARE_DROPPED, Motion, MotionBasis, fit_basis
+from .builder import Channel, GlbBuilder, metres
+from .drawn import DrawnFace
+from .pose import RigidMotion, motions
+from .scene import Pivot, add_pivots, add_rigid_parts, file_extras
+from .skin import add_skin, turn_of
+
+if TYPE_CHECKING:
+    from ..clip import Clip
+
+ANIMATION_NAME = "performance"
+NORMAL_FRAMES = 150
+"""Frames that the shapes' normals are fitted to."""
+ROUNDING = 1e-4
+"""What single precision in metres may add to an error, mm."""
+BYTES_IN_MEMORY = 2**29
+"""Motion larger than this is not held but drawn again when it is looked at."""
+
+
+def clip_to_glb(clip: Clip, *, tolerance: float = 0.05) -> bytes:
+    """Return `clip` as GLB: one animation, a key per frame.
+
+    Skin and strands share one set of morph targets, a basis of their simulated motion with as few
+    shapes as keep every vertex of every frame within `tolerance`; jaw, eyes and head are nodes
+    that turn. The file's extras state the number of shapes and the error that they really leave.
+
+    Args:
+        clip: What to write.
+        tolerance: Largest error of any vertex [mm].
+    """
+    rig = clip.rig
+    face = DrawnFace.of(rig.head)
+    basis = fit_basis(_drawn_motion(clip, face), tolerance=tolerance)
+    builder = GlbBuilder(_extras(clip, basis, tolerance))
+    pivots = add_pivots(builder, rig.head, rig.jaw)
+    skin = add_skin(
+        builder,
+        face,
+        pivots["head"],
+        names=[f"shape_{number:02d}" for number in range(len(basis.shapes))],
+        moves=basis.shapes,
+        turns=_turns(clip, face, basis),
+        smallest=SHARE_DROPPED * tolerance,
+    )
+    add_rigid_parts(builder, rig.head, pivots)
+    channels = [Channel(skin, "weights", basis.weights.ravel()), *_pose_channels(clip, pivots)]
+    builder.animation(ANIMATION_NAME, np.arange(len(clip.displacements)) / clip.fps, channels)
+    return builder.to_bytes()
+
+
+def _extras(clip: Clip, basis: MotionBasis, tolerance: float) -> dict[str, object]:
+    # Rounded up: the stated figure is a promise.
+    error = math.ceil((basis.max_error + ROUNDING) * 1e4) / 1e4
+    return {
+        **file_extras(rig_id=clip.rig.id, rig_name=clip.rig.name),
+        "basis": len(basis.shapes),
+        "tolerance_mm": tolerance,
+        "max_error_mm": error,
+        "fps": clip.fps,
+        "frames": len(clip.displacements),
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnMotion:
+    """How skin and strands move from `rest` [mm], shape (v, 3), drawn frame by frame on demand."""
+
+    face: DrawnFace
+    rest: FloatArray
+    displacements: Float32Array
+
+    def __len__(self) -> int:
+        return len(self.displacements)
+
+    def __getitem__(self, frames: slice | IntArray, /) -> Float32Array:
+        chosen = self.displacements[frames]
+        motion = np.empty((len(chosen), *self.rest.shape), np.float32)
+        for frame, displacements in zip(motion, chosen, strict=True):
+            frame[:] = self.face.positions(displacements) - self.rest
+        return motion
+
+
+def _drawn_motion(clip: Clip, face: DrawnFace) -> Motion:
+    motion = DrawnMotion(face, face.rest_positions(), clip.displacements)
+    size = len(motion) * motion.rest.size * np.dtype(np.float32).itemsize
+    return motion[:] if size <= BYTES_IN_MEMORY else motion
+
+
+def _turns(clip: Clip, face: DrawnFace, basis: MotionBasis) -> Float32Array:
+    """Return the change of the skin's normals that best goes with each shape, shape (k, d, 3).
+
+    Normals are not linear in the positions, so this is a least-squares fit over the frames.
+    """
+    count = len(clip.displacements)
+    chosen = np.unique(np.linspace(0, count - 1, NORMAL_FRAMES).round().astype(np.int64))
+    changes = np.stack([turn_of(face, clip.displacements[frame]).ravel() for frame in chosen])
+    weights = basis.weights[chosen].astype(np.float64)
+    # A little damping: shapes that none of these frames uses get no normals instead of noise.
+    squares = weights.T @ weights + 1e-3 * np.eye(weights.shape[1])
+    fitted = np.linalg.solve(squares, weights.T @ changes)
+    return fitted.reshape(len(squares), -1, 3).astype(np.float32)
+
+
+def _pose_channels(clip: Clip, pivots: Mapping[str, Pivot]) -> list[Channel]:
+    """Return the channels of the nodes that move at all."""
+    moved = [motions(clip.rig.head, clip.rig.jaw, pose) for pose in clip.poses]
+    channels = []
+    for name in moved[0]:
+        own = [frame[name] for frame in moved]
+        if not all(motion.still for motion in own):
+            channels += _node_channels(pivots, name, own)
+    return channels
+
+
+def _node_channels(
+    pivots: Mapping[str, Pivot], name: str, own: Sequence[RigidMotion]
+) -> list[Channel]:
+    node = pivots[name].node
+    channels = [Channel(node, "rotation", np.stack([motion.quaternion for motion in own]))]
+    if any(motion.shift.any() for motion in own):
+        parent = np.zeros(3) if name == "head" else pivots["head"].origin
+        places = np.stack([motion.origin + motion.shift - parent for motion in own])
+        channels.append(Channel(node, "translation", metres(places)))
+    return channels
