@@ -1,0 +1,118 @@
+"""A rig compiled to arrays for one model: what a simulator steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from .arrays import FloatArray
+from .dynamics import TABLEAUS, Pull
+from .errors import InvalidValue
+from .force_basis import moving_pull, rest_basis
+from .muscle import LidMuscle
+from .rig import Model, Rig
+from .stability import largest_frequency, least_substeps
+from .timeline import TICKS_PER_SECOND
+from .tissue import TissueModel, assemble, no_pull
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """One rig, ready to step.
+
+    Attributes:
+        rig: Where it comes from.
+        model: The forms of the physics.
+        tissue: Layers, springs, terms, contact.
+        basis: Muscle forces at activation 1 in mode "rest", shape (m, 3, n).
+        pull: The muscles in mode "current"; empty in mode "rest".
+        substeps: Integration steps a tick.
+        omega: Fastest mode, rad/s.
+        lid_angles: Turn of upper and lower lid at activation 1 of each muscle, degrees,
+            shape (m, 2, 2): muscle, side (left, right), lid (upper, lower).
+        smoothing: Share of the way to its command that each channel goes in a tick, (channels,).
+    """
+
+    rig: Rig
+    model: Model
+    tissue: TissueModel
+    basis: FloatArray
+    pull: Pull
+    substeps: int
+    omega: float
+    lid_angles: FloatArray
+    smoothing: FloatArray
+
+    @property
+    def tableau(self) -> FloatArray:
+        """The integrator, as the kernel knows it."""
+        return TABLEAUS[self.model.integrator]
+
+
+@lru_cache(maxsize=16)
+def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly:
+    """Return `rig` compiled for `model`.
+
+    Args:
+        rig: The rig.
+        model: The forms of the physics.
+        substeps: Steps a tick; None takes the least that is stable.
+
+    Raises:
+        InvalidValue: If `substeps` is fewer than the stability bound asks for.
+    """
+    head, parameters = rig.head, rig.parameters
+    tissue = assemble(head, parameters, literal_springs=model.springs == "literal")
+    omega = largest_frequency(tissue.arrays, tissue.layers.normals)
+    least = least_substeps(omega, parameters.damping, model.integrator, 1.0 / TICKS_PER_SECOND)
+    if substeps is not None and substeps < least:
+        raise InvalidValue(
+            f"{substeps} substeps a tick are not stable: this rig's fastest mode is "
+            f"{omega:.0f} rad/s and {model.integrator} needs at least {least}"
+        )
+    moving = model.forces == "current"
+    return Assembly(
+        rig=rig,
+        model=model,
+        tissue=tissue,
+        basis=rest_basis(head, tissue, rig.muscles, ring=model.sphincter),
+        pull=moving_pull(head, tissue, rig.muscles, ring=model.sphincter)
+        if moving
+        else no_pull(tissue.node_count),
+        substeps=substeps or least,
+        omega=omega,
+        lid_angles=_lid_angles(rig),
+        smoothing=_smoothing(rig),
+    )
+
+
+def _lid_angles(rig: Rig) -> FloatArray:
+    angles = np.zeros((len(rig.muscles), 2, 2))
+    for index, muscle in enumerate(rig.muscles):
+        if isinstance(muscle, LidMuscle):
+            side = 1 if muscle.name.endswith(".R") else 0
+            angles[index, side] = muscle.upper, muscle.lower
+    return angles
+
+
+def _smoothing(rig: Rig) -> FloatArray:
+    """Return 1 - exp(-dt/τ) of each channel's first-order lag."""
+    p, channels = rig.parameters, rig.channels
+    lag = np.full(channels.count, p.activation_lag)
+    for index, muscle in enumerate(rig.muscles):
+        if isinstance(muscle, LidMuscle):
+            lag[index] = p.lid_lag
+    for axis in ("yaw", "pitch"):
+        lag[channels.index("gaze", axis)] = GAZE_LAG
+    for axis in ("yaw", "pitch", "roll"):
+        lag[channels.index("head", axis)] = HEAD_LAG
+    tick = 1.0 / TICKS_PER_SECOND
+    return np.where(lag > 0.0, -np.expm1(-tick / np.maximum(lag, 1.0e-9)), 1.0)
+
+
+GAZE_LAG = 0.015
+"""s; a saccade of 10 degrees takes about 50 ms."""
+HEAD_LAG = 0.120
+"""s; the head's inertia."""

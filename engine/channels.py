@@ -1,0 +1,51 @@
+"""What commands set: one number a muscle, then jaw, gaze and head, in a fixed order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+JAW = ("pitch", "yaw", "thrust")
+GAZE = ("yaw", "pitch")
+HEAD = ("yaw", "pitch", "roll")
+GROUPS = {"jaw": JAW, "gaze": GAZE, "head": HEAD}
+LIMITS = {
+    ("jaw", "pitch"): (-2.0, 35.0),
+    ("jaw", "yaw"): (-10.0, 10.0),
+    ("jaw", "thrust"): (-2.0, 8.0),
+    ("gaze", "yaw"): (-45.0, 45.0),
+    ("gaze", "pitch"): (-35.0, 35.0),
+    ("head", "yaw"): (-80.0, 80.0),
+    ("head", "pitch"): (-60.0, 60.0),
+    ("head", "roll"): (-50.0, 50.0),
+}
+"""Degrees, and mm of thrust: the range of a living neck, eye and jaw."""
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Where each number of a command stands in a face's vector.
+
+    Attributes:
+        muscle_names: The rig's muscles, first in the vector.
+    """
+
+    muscle_names: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        """Length of the vector."""
+        return len(self.muscle_names) + len(JAW) + len(GAZE) + len(HEAD)
+
+    @property
+    def muscle_count(self) -> int:
+        """Number of muscles."""
+        return len(self.muscle_names)
+
+    def index(self, group: str, axis: str) -> int:
+        """Return the place of, say, ("jaw", "pitch")."""
+        offset = self.muscle_count
+        for name, axes in GROUPS.items():
+            if name == group:
+                return offset + axes.index(axis)
+            offset += len(axes)
+        raise KeyError(group)

@@ -1,0 +1,619 @@
+"""The kernels: tissue forces, contact, and the integrators of Lagrangian dynamics (section 6).
+
+Only arrays come in and only arrays go out. A face's nodes are columns: positions, velocities and
+forces have shape (3, nodes), components first, so that each component is one run of memory and the
+spring loop becomes vector instructions. The first third of the nodes is the epidermis, the second
+the dermis, the last the hypodermis. Units: mm, g, s.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar, cast
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .arrays import FloatArray
+
+IndexArray = npt.NDArray[np.int32]
+
+F = TypeVar("F", bound=Callable[..., object])
+
+
+def kernel(function: F) -> F:
+    """Compile `function` when it is first called, without the GIL, and keep the code on disk.
+
+    Of fast mathematics only re-association and fused multiply-add: NaN stays NaN, so a diverging
+    face is seen.
+    """
+    compiled = numba.njit(
+        nogil=True,
+        cache=True,
+        error_model="numpy",
+        fastmath={"reassoc", "contract", "arcp", "nsz"},
+    )(function)
+    return cast(F, compiled)
+
+
+TABLEAUS: dict[str, FloatArray] = {
+    "rk2": np.array([[0.5, 0.0], [0.0, 1.0]]),
+    "heun": np.array([[1.0, 0.5], [0.0, 0.5]]),
+    "rk4": np.array([[0.5, 1 / 6], [0.5, 1 / 3], [1.0, 1 / 3], [0.0, 1 / 6]]),
+    "symplectic_euler": np.zeros((0, 2)),
+}
+"""Integrators by name. A row is a stage of explicit Runge-Kutta: how far ahead of the step's start
+the next stage stands, and this stage's share of the step. "rk2" is the midpoint form: the paper's
+second-order Runge-Kutta (section 6), the default and the reference. Symplectic Euler, velocity
+first, then position with the new velocity, has no rows."""
+
+
+class Springs(NamedTuple):
+    """Structural and shear springs between nodes (Eqs. 19-20).
+
+    Attributes:
+        first, second: Node indices, shape (springs,).
+        rest: Rest length d0, mm.
+        low, high: k_L and k_H, below and above the strain threshold.
+        guard: Added stiffness of the third phase, in compression.
+        threshold: ε_c, shared by all springs.
+        guard_strain: ε_k, compressive strain at which the guard sets in.
+        literal: True for Eq. 20 as printed, which jumps at the threshold.
+    """
+
+    first: IndexArray
+    second: IndexArray
+    rest: FloatArray
+    low: FloatArray
+    high: FloatArray
+    guard: FloatArray
+    threshold: float
+    guard_strain: float
+    literal: bool
+
+
+class Incidence(NamedTuple):
+    """Which springs meet at each node, in order: `springs[start[i]:start[i + 1]]`, signed."""
+
+    start: IndexArray
+    springs: IndexArray
+    signs: FloatArray
+
+
+class Anchors(NamedTuple):
+    """Ties of the hypodermis to the skull, which cannot be entered (section 5.2).
+
+    Attributes:
+        tangential, normal: Stiffness along and across the skull, shape (n,).
+        excess: Added share of the tangential stiffness beyond `excess_distance` mm.
+        skull: Added share of the normal stiffness beyond `skull_gap` mm inwards.
+    """
+
+    tangential: FloatArray
+    normal: FloatArray
+    excess: float
+    excess_distance: float
+    skull: float
+    skull_gap: float
+
+
+class Barrier(NamedTuple):
+    """Layer order: a layer keeps a share of its rest gap to the next along the normal.
+
+    Attributes:
+        stiffness: Per node of the epidermis, shape (n,); zeros switch the term off.
+        gap: Least distance, mm, shape (2, n): epidermis-dermis, dermis-hypodermis.
+    """
+
+    stiffness: FloatArray
+    gap: FloatArray
+
+
+class Plate(NamedTuple):
+    """Linear bending stiffness of the epidermis: a sparse symmetric matrix in CSR."""
+
+    start: IndexArray
+    columns: IndexArray
+    values: FloatArray
+
+
+class Pressure(NamedTuple):
+    """Columns of fat that keep their volume, one a quad.
+
+    Attributes:
+        quads: Corner nodes in the epidermis, shape (q, 4).
+        stiffness: Pressure modulus times the squared depth, shape (q,).
+        volume: Rest volume, mm³, shape (q,).
+        height: Rest volume over area, mm, shape (q,).
+    """
+
+    quads: IndexArray
+    stiffness: FloatArray
+    volume: FloatArray
+    height: FloatArray
+
+
+class Contacts(NamedTuple):
+    """What the skin may not pass: the other lip, the teeth, the eyeballs.
+
+    Attributes:
+        upper_lip, lower_lip: Paired epidermis nodes, shape (l,).
+        lip_gap: Least height of the upper over the lower, mm, shape (l,).
+        tooth_nodes: Epidermis nodes kept before the dental arch, shape (t,).
+        tooth_clearance: Distance kept, mm, shape (t,).
+        arch: Depth z of the arch at |x| = 0, 1, 2, … mm.
+        arch_bottom: Height below which lips may fall back behind the upper teeth, mm.
+        eye_nodes: Epidermis nodes kept off an eyeball, shape (e,).
+        eye_centers: Ball centre for each, shape (3, e).
+        eye_radius: Least distance, mm, shape (e,).
+    """
+
+    upper_lip: IndexArray
+    lower_lip: IndexArray
+    lip_gap: FloatArray
+    tooth_nodes: IndexArray
+    tooth_clearance: FloatArray
+    arch: FloatArray
+    arch_bottom: float
+    eye_nodes: IndexArray
+    eye_centers: FloatArray
+    eye_radius: FloatArray
+
+
+class Tissue(NamedTuple):
+    """Everything of a rig that does not change while a face moves."""
+
+    rest: FloatArray
+    inverse_mass: FloatArray
+    damping: float
+    springs: Springs
+    incidence: Incidence
+    anchors: Anchors
+    barrier: Barrier
+    plate: Plate
+    pressure: Pressure
+    contacts: Contacts
+
+
+class Skull(NamedTuple):
+    """The skull side of a face as the jaw stands: shapes (3, n) unless said.
+
+    Attributes:
+        targets: Where the hypodermis is anchored.
+        bone: Foot of each pressure column.
+        normals: Outward normals of the skull.
+        load: Dead load, with the muscles' forces in mode "rest" added, shape (3, nodes).
+    """
+
+    targets: FloatArray
+    bone: FloatArray
+    normals: FloatArray
+    load: FloatArray
+
+
+class Pull(NamedTuple):
+    """Muscles whose weights and directions follow the moving skin (mode "current").
+
+    One row a muscle that is active; empty in mode "rest".
+
+    Attributes:
+        kinds: 0 linear, 1 sphincter, 2 sheet, shape (m,).
+        shape: Geometry, shape (m, 16); see `engine.force_basis`.
+        scale: Force scale times activation, shape (m,).
+        share: Each node's share of the muscle, shape (m, n).
+    """
+
+    kinds: IndexArray
+    shape: FloatArray
+    scale: FloatArray
+    share: FloatArray
+
+
+class Workspace(NamedTuple):
+    """Scratch arrays of one thread, so that no step allocates."""
+
+    tension: FloatArray
+    force: FloatArray
+    x: FloatArray
+    v: FloatArray
+    slope_x: FloatArray
+    slope_v: FloatArray
+
+
+def workspace(node_count: int, spring_count: int) -> Workspace:
+    """Return scratch arrays for a face of `node_count` nodes and `spring_count` springs."""
+    shape = (3, node_count)
+    return Workspace(np.zeros((3, spring_count)), *(np.zeros(shape) for _ in range(5)))
+
+
+@kernel
+def add_spring_forces(
+    x: FloatArray, springs: Springs, incidence: Incidence, tension: FloatArray, force: FloatArray
+) -> None:
+    """Add Σ_j k (|d| - d0) d/|d| at each node (Eqs. 19-20) to `force`.
+
+    First every spring's tension, then every node's sum in a fixed order: the first loop is vector
+    code, and the bits do not depend on anything else that runs.
+    """
+    first, second = springs.first, springs.second
+    rest, low, high, guard = springs.rest, springs.low, springs.high, springs.guard
+    threshold, guard_strain = springs.threshold, springs.guard_strain
+    x0, x1, x2 = x[0], x[1], x[2]
+    t0, t1, t2 = tension[0], tension[1], tension[2]
+    if springs.literal:
+        for s in range(first.shape[0]):
+            i, j = first[s], second[s]
+            dx, dy, dz = x0[j] - x0[i], x1[j] - x1[i], x2[j] - x2[i]
+            length = math.sqrt(dx * dx + dy * dy + dz * dz)
+            stretch = length - rest[s]
+            stiffness = low[s] if stretch <= threshold * rest[s] else high[s]  # Eq. 20
+            pull = stiffness * stretch + guard[s] * min(stretch + guard_strain * rest[s], 0.0)
+            pull /= length
+            t0[s], t1[s], t2[s] = pull * dx, pull * dy, pull * dz
+    else:
+        for s in range(first.shape[0]):
+            i, j = first[s], second[s]
+            dx, dy, dz = x0[j] - x0[i], x1[j] - x1[i], x2[j] - x2[i]
+            length = math.sqrt(dx * dx + dy * dy + dz * dz)
+            stretch = length - rest[s]
+            pull = (
+                low[s] * stretch
+                + (high[s] - low[s]) * max(stretch - threshold * rest[s], 0.0)
+                + guard[s] * min(stretch + guard_strain * rest[s], 0.0)
+            ) / length
+            t0[s] = pull * dx
+            t1[s] = pull * dy
+            t2[s] = pull * dz
+    start, order, signs = incidence.start, incidence.springs, incidence.signs
+    for i in range(start.shape[0] - 1):
+        fx = fy = fz = 0.0
+        for q in range(start[i], start[i + 1]):
+            s, sign = order[q], signs[q]
+            fx += sign * t0[s]
+            fy += sign * t1[s]
+            fz += sign * t2[s]
+        force[0, i] += fx
+        force[1, i] += fy
+        force[2, i] += fz
+
+
+@kernel
+def add_anchor_forces(
+    x: FloatArray, anchors: Anchors, targets: FloatArray, normals: FloatArray, force: FloatArray
+) -> None:
+    """Add the skull's hold on the hypodermis to `force`.
+
+    Elastic ties, stiffer when overstretched, and a one-sided wall where the skull begins.
+    """
+    n = targets.shape[1]
+    base = x.shape[1] - n
+    for a in range(n):
+        i = base + a
+        ux, uy, uz = targets[0, a] - x[0, i], targets[1, a] - x[1, i], targets[2, a] - x[2, i]
+        nx, ny, nz = normals[0, a], normals[1, a], normals[2, a]
+        depth = ux * nx + uy * ny + uz * nz
+        along = anchors.tangential[a]
+        across = (anchors.normal[a] - along) * depth
+        distance = math.sqrt(ux * ux + uy * uy + uz * uz)
+        if distance > anchors.excess_distance:
+            along += (
+                anchors.excess * anchors.tangential[a] * (1.0 - anchors.excess_distance / distance)
+            )
+        if depth > anchors.skull_gap:
+            across += anchors.skull * anchors.normal[a] * (depth - anchors.skull_gap)
+        force[0, i] += along * ux + across * nx
+        force[1, i] += along * uy + across * ny
+        force[2, i] += along * uz + across * nz
+
+
+@kernel
+def add_barrier_forces(
+    x: FloatArray, barrier: Barrier, normals: FloatArray, force: FloatArray
+) -> None:
+    """Push apart layers that come closer than the barrier's gap along the normal."""
+    n = normals.shape[1]
+    for layer in range(2):
+        for a in range(n):
+            i, j = a + layer * n, a + (layer + 1) * n
+            nx, ny, nz = normals[0, a], normals[1, a], normals[2, a]
+            gap = (x[0, i] - x[0, j]) * nx + (x[1, i] - x[1, j]) * ny + (x[2, i] - x[2, j]) * nz
+            push = barrier.stiffness[a] * max(barrier.gap[layer, a] - gap, 0.0)
+            force[0, i] += push * nx
+            force[1, i] += push * ny
+            force[2, i] += push * nz
+            force[0, j] -= push * nx
+            force[1, j] -= push * ny
+            force[2, j] -= push * nz
+
+
+@kernel
+def add_plate_forces(x: FloatArray, rest: FloatArray, plate: Plate, force: FloatArray) -> None:
+    """Resist bending of the epidermis: -K (x - rest), K sparse."""
+    start, columns, values = plate.start, plate.columns, plate.values
+    for i in range(start.shape[0] - 1):
+        fx = fy = fz = 0.0
+        for q in range(start[i], start[i + 1]):
+            j, k = columns[q], values[q]
+            fx += k * (x[0, j] - rest[0, j])
+            fy += k * (x[1, j] - rest[1, j])
+            fz += k * (x[2, j] - rest[2, j])
+        force[0, i] -= fx
+        force[1, i] -= fy
+        force[2, i] -= fz
+
+
+@kernel
+def column_middle(x: FloatArray, a: int, n: int) -> tuple[float, float, float]:
+    """Return the mean of the three layers' nodes at epidermis node `a`."""
+    return (
+        (x[0, a] + x[0, a + n] + x[0, a + 2 * n]) / 3.0,
+        (x[1, a] + x[1, a + n] + x[1, a + 2 * n]) / 3.0,
+        (x[2, a] + x[2, a + n] + x[2, a + 2 * n]) / 3.0,
+    )
+
+
+@kernel
+def add_pressure_forces(
+    x: FloatArray, bone: FloatArray, pressure: Pressure, force: FloatArray
+) -> None:
+    """Keep the volume of each column of fat between the mid-surface and the bone.
+
+    V = a·d with a = ½ p x r of the quad's diagonals and d from bone to mid-surface; the force is
+    minus the gradient of ½ k (V/V0 - 1)².
+    """
+    quads = pressure.quads
+    n = bone.shape[1]
+    for q in range(quads.shape[0]):
+        c0, c1, c2, c3 = quads[q, 0], quads[q, 1], quads[q, 2], quads[q, 3]
+        x0, y0, z0 = column_middle(x, c0, n)
+        x1, y1, z1 = column_middle(x, c1, n)
+        x2, y2, z2 = column_middle(x, c2, n)
+        x3, y3, z3 = column_middle(x, c3, n)
+        dx = 0.25 * (x0 + x1 + x2 + x3 - bone[0, c0] - bone[0, c1] - bone[0, c2] - bone[0, c3])
+        dy = 0.25 * (y0 + y1 + y2 + y3 - bone[1, c0] - bone[1, c1] - bone[1, c2] - bone[1, c3])
+        dz = 0.25 * (z0 + z1 + z2 + z3 - bone[2, c0] - bone[2, c1] - bone[2, c2] - bone[2, c3])
+        px, py, pz = x2 - x0, y2 - y0, z2 - z0
+        rx, ry, rz = x3 - x1, y3 - y1, z3 - z1
+        ax = 0.5 * (py * rz - pz * ry)
+        ay = 0.5 * (pz * rx - px * rz)
+        az = 0.5 * (px * ry - py * rx)
+        volume = ax * dx + ay * dy + az * dz
+        push = -pressure.stiffness[q] / pressure.volume[q] * (volume / pressure.volume[q] - 1.0)
+        gpx = 0.5 * (ry * dz - rz * dy)
+        gpy = 0.5 * (rz * dx - rx * dz)
+        gpz = 0.5 * (rx * dy - ry * dx)
+        grx = 0.5 * (dy * pz - dz * py)
+        gry = 0.5 * (dz * px - dx * pz)
+        grz = 0.5 * (dx * py - dy * px)
+        for k in range(4):
+            along_p = 1.0 if k == 2 else (-1.0 if k == 0 else 0.0)
+            along_r = 1.0 if k == 3 else (-1.0 if k == 1 else 0.0)
+            fx = push * (0.25 * ax + along_p * gpx + along_r * grx) / 3.0
+            fy = push * (0.25 * ay + along_p * gpy + along_r * gry) / 3.0
+            fz = push * (0.25 * az + along_p * gpz + along_r * grz) / 3.0
+            a = quads[q, k]
+            for layer in range(3):
+                force[0, a + layer * n] += fx
+                force[1, a + layer * n] += fy
+                force[2, a + layer * n] += fz
+
+
+@kernel
+def longitudinal(along: float, reach: float, strength: float) -> float:
+    """Return Θ1 of one point (Eqs. 7, 15); the twin of `muscle.longitudinal_profile`."""
+    if along < 0.0 or along > reach:
+        return 0.0
+    power = along**strength
+    if along <= 1.0:
+        return math.cos((1.0 - power) * (math.pi / 2.0))
+    return math.cos((power - 1.0) / (reach**strength - 1.0) * (math.pi / 2.0))
+
+
+@kernel
+def add_muscle_forces(x: FloatArray, pull: Pull, force: FloatArray) -> None:
+    """Add the muscles' forces at the skin's present place (mode "current", Eqs. 1-17).
+
+    Weights come from the epidermis point, the force acts on the hypodermis node under it.
+    """
+    n = pull.share.shape[1]
+    base = x.shape[1] - n
+    for m in range(pull.kinds.shape[0]):
+        g = pull.shape[m]
+        for i in range(n):
+            share = pull.share[m, i] * pull.scale[m]
+            if share == 0.0:
+                continue
+            rx, ry, rz = x[0, i] - g[0], x[1, i] - g[1], x[2, i] - g[2]
+            if pull.kinds[m] == 0:
+                distance = max(math.sqrt(rx * rx + ry * ry + rz * rz), 1e-9)
+                cosine = (rx * g[3] + ry * g[4] + rz * g[5]) / distance
+                across = math.acos(min(max(cosine, -1.0), 1.0)) / g[7]
+                if across > 1.0:
+                    continue
+                weight = longitudinal(distance / g[6], g[8], g[9])
+                weight *= math.cos(g[7] * across) * math.cos(across * (math.pi / 2.0))
+                dx, dy, dz = -rx / distance, -ry / distance, -rz / distance
+            elif pull.kinds[m] == 1:
+                across = (rx * g[3] + ry * g[4] + rz * g[5]) / g[12]
+                up = (rx * g[6] + ry * g[7] + rz * g[8]) / g[13]
+                radius = math.sqrt(across * across + up * up)
+                if radius > 1.0:
+                    continue
+                if g[14] > 0.0:
+                    weight = math.cos((1.0 - radius) * (math.pi / 2.0))
+                elif radius <= g[15]:
+                    weight = math.sin(radius / g[15] * (math.pi / 2.0))
+                else:
+                    weight = math.cos((radius - g[15]) / (1.0 - g[15]) * (math.pi / 2.0))
+                dx, dy, dz = g[9] - x[0, i], g[10] - x[1, i], g[11] - x[2, i]
+                distance = max(math.sqrt(dx * dx + dy * dy + dz * dz), 1e-9)
+                dx, dy, dz = dx / distance, dy / distance, dz / distance
+            else:
+                along = -(rx * g[3] + ry * g[4] + rz * g[5]) / g[6]
+                weight = longitudinal(along, g[7], g[8])
+                dx, dy, dz = g[3], g[4], g[5]
+            force[0, base + i] += share * weight * dx
+            force[1, base + i] += share * weight * dy
+            force[2, base + i] += share * weight * dz
+
+
+@kernel
+def static_forces(
+    x: FloatArray, tissue: Tissue, skull: Skull, pull: Pull, tension: FloatArray, force: FloatArray
+) -> None:
+    """Set `force` to f - Q of Eq. 21: everything that acts on the nodes but damping."""
+    force[:] = skull.load
+    add_spring_forces(x, tissue.springs, tissue.incidence, tension, force)
+    add_anchor_forces(x, tissue.anchors, skull.targets, skull.normals, force)
+    if tissue.barrier.stiffness.shape[0] > 0:
+        add_barrier_forces(x, tissue.barrier, skull.normals, force)
+    if tissue.plate.values.shape[0] > 0:
+        add_plate_forces(x, tissue.rest, tissue.plate, force)
+    if tissue.pressure.quads.shape[0] > 0:
+        add_pressure_forces(x, skull.bone, tissue.pressure, force)
+    if pull.kinds.shape[0] > 0:
+        add_muscle_forces(x, pull, force)
+
+
+@kernel
+def accelerations(
+    x: FloatArray,
+    v: FloatArray,
+    tissue: Tissue,
+    skull: Skull,
+    pull: Pull,
+    tension: FloatArray,
+    out: FloatArray,
+) -> None:
+    """Set `out` to ẍ = M⁻¹ (f - Q) - c ẋ (Eqs. 21-22); fixed nodes have inverse mass 0."""
+    static_forces(x, tissue, skull, pull, tension, out)
+    damping = tissue.damping
+    for c in range(3):
+        for i in range(x.shape[1]):
+            inverse = tissue.inverse_mass[i]
+            out[c, i] = out[c, i] * inverse - damping * v[c, i] if inverse > 0.0 else 0.0
+
+
+@kernel
+def shift(target: FloatArray, base: FloatArray, slope: FloatArray, dt: float) -> None:
+    """Set `target` to `base` + dt `slope`."""
+    for c in range(3):
+        for i in range(base.shape[1]):
+            target[c, i] = base[c, i] + dt * slope[c, i]
+
+
+@kernel
+def runge_kutta_stage(
+    x: FloatArray, v: FloatArray, ahead: float, share: float, work: Workspace
+) -> None:
+    """Take this stage's slope into the step with `share`; stand `ahead` of the start with it."""
+    for c in range(3):
+        for i in range(x.shape[1]):
+            speed, slope = work.v[c, i], work.force[c, i]
+            work.slope_x[c, i] += share * speed
+            work.slope_v[c, i] += share * slope
+            work.x[c, i] = x[c, i] + ahead * speed
+            work.v[c, i] = v[c, i] + ahead * slope
+
+
+@kernel
+def resolve_lips(
+    x: FloatArray, v: FloatArray, inverse_mass: FloatArray, contacts: Contacts
+) -> None:
+    """Keep each upper-lip node above its partner, in position and velocity."""
+    for q in range(contacts.upper_lip.shape[0]):
+        i, j = contacts.upper_lip[q], contacts.lower_lip[q]
+        overlap = contacts.lip_gap[q] - (x[1, i] - x[1, j])
+        total = inverse_mass[i] + inverse_mass[j]
+        if overlap > 0.0 and total > 0.0:
+            share = inverse_mass[i] / total
+            x[1, i] += overlap * share
+            x[1, j] -= overlap * (1.0 - share)
+            closing = v[1, i] - v[1, j]
+            if closing < 0.0:
+                v[1, i] -= closing * share
+                v[1, j] += closing * (1.0 - share)
+
+
+@kernel
+def resolve_teeth(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
+    """Keep the lips before the upper dental arch."""
+    arch = contacts.arch
+    for q in range(contacts.tooth_nodes.shape[0]):
+        i = contacts.tooth_nodes[q]
+        lateral = abs(x[0, i])
+        cell = int(lateral)
+        if cell >= arch.shape[0] - 1:
+            continue
+        front = arch[cell] + (lateral - cell) * (arch[cell + 1] - arch[cell])
+        front += contacts.tooth_clearance[q]
+        if x[1, i] < contacts.arch_bottom:
+            # Below the edge of the upper teeth a dropping lower lip may swing back with the jaw.
+            front -= (contacts.arch_bottom - x[1, i]) * 0.8
+        if x[2, i] < front:
+            x[2, i] = front
+            v[2, i] = max(v[2, i], 0.0)
+
+
+@kernel
+def resolve_eyes(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
+    """Keep the lids outside the eyeballs; they slide on them."""
+    for q in range(contacts.eye_nodes.shape[0]):
+        i = contacts.eye_nodes[q]
+        cx, cy, cz = (
+            contacts.eye_centers[0, q],
+            contacts.eye_centers[1, q],
+            contacts.eye_centers[2, q],
+        )
+        dx, dy, dz = x[0, i] - cx, x[1, i] - cy, x[2, i] - cz
+        distance = math.sqrt(dx * dx + dy * dy + dz * dz)
+        if distance < contacts.eye_radius[q]:
+            scale = contacts.eye_radius[q] / distance
+            x[0, i], x[1, i], x[2, i] = cx + dx * scale, cy + dy * scale, cz + dz * scale
+            inwards = (v[0, i] * dx + v[1, i] * dy + v[2, i] * dz) / (distance * distance)
+            if inwards < 0.0:
+                v[0, i] -= inwards * dx
+                v[1, i] -= inwards * dy
+                v[2, i] -= inwards * dz
+
+
+@kernel
+def advance(
+    x: FloatArray,
+    v: FloatArray,
+    substeps: int,
+    dt: float,
+    tableau: FloatArray,
+    tissue: Tissue,
+    skull: Skull,
+    pull: Pull,
+    work: Workspace,
+) -> None:
+    """Move one face by `substeps` steps of `dt` seconds: integrate, then contact.
+
+    `x` and `v`, shape (3, nodes), are overwritten; `tableau` is one of `TABLEAUS`, where no rows
+    stand for symplectic Euler. Contact is resolved every substep, with the velocity mended too:
+    once a frame, lips chatter.
+    """
+    stages = tableau.shape[0]
+    for _ in range(substeps):
+        work.x[:] = x
+        work.v[:] = v
+        work.slope_x[:] = 0.0
+        work.slope_v[:] = 0.0
+        for stage in range(max(stages, 1)):
+            accelerations(work.x, work.v, tissue, skull, pull, work.tension, work.force)
+            if stages > 0:
+                ahead, share = tableau[stage, 0] * dt, tableau[stage, 1] * dt
+                runge_kutta_stage(x, v, ahead, share, work)
+        if stages > 0:
+            shift(x, x, work.slope_x, 1.0)
+            shift(v, v, work.slope_v, 1.0)
+        else:
+            shift(v, v, work.force, dt)
+            shift(x, x, v, dt)
+        resolve_lips(x, v, tissue.inverse_mass, tissue.contacts)
+        resolve_teeth(x, v, tissue.contacts)
+        resolve_eyes(x, v, tissue.contacts)

@@ -1,0 +1,239 @@
+"""What each muscle does to each node at full activation, in the two declared force modes.
+
+Mode "rest": weights and directions are taken once, at rest, and a muscle's force is its row of a
+constant basis times its activation. Mode "current": both are recomputed as the skin moves, the
+literal reading of the paper. They differ by up to 10 mm at full AU4, so a session chooses one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import FloatArray
+from .dynamics import Pull
+from .head import Head
+from .muscle import (
+    MIDLINE_BLEND_MM,
+    RING_PEAK,
+    LidMuscle,
+    LinearMuscle,
+    Muscle,
+    SheetMuscle,
+    SphincterMuscle,
+    mirrored,
+)
+from .tissue import TissueModel
+
+QUADRATURE = 4
+"""Points along each side of a quad at which weights are integrated."""
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Places where muscles are evaluated.
+
+    Attributes:
+        points, normals: mm and unit, shape (k, 3).
+        jaw: Jaw weight, shape (k,): 0 above the lip slit, 1 below.
+    """
+
+    points: FloatArray
+    normals: FloatArray
+    jaw: FloatArray
+
+
+def rest_basis(
+    head: Head, tissue: TissueModel, muscles: Sequence[Muscle], *, ring: str
+) -> FloatArray:
+    """Return each muscle's force on the hypodermis at activation 1, shape (m, 3, n).
+
+    Args:
+        head: The head; its jaw weights tell upper from lower lip.
+        tissue: Its tissue.
+        muscles: In the rig's order; lid muscles give rows of zeros.
+        ring: Profile of sphincters, "ring" or "literal".
+    """
+    n = tissue.node_count
+    basis = np.zeros((len(muscles), 3, n))
+    nodes = Samples(tissue.sheet.points, tissue.layers.normals, head.jaw_weight[:n])
+    grid = _quadrature(tissue, nodes) if tissue.parameters.force_quadrature else None
+    for row, muscle in enumerate(muscles):
+        if isinstance(muscle, LidMuscle):
+            continue
+        if grid is not None:
+            samples, shape, area = grid
+            density = force_density(muscle, samples, ring=ring) * area[:, None]
+            force = _lump(tissue, shape, density)
+        else:
+            force = force_density(muscle, nodes, ring=ring) * tissue.scale[:, None]
+        force = _smooth(tissue, force, tissue.parameters.force_smoothing)
+        force[tissue.held] = 0.0
+        basis[row] = muscle.force_scale * force.T
+    return basis
+
+
+def force_density(muscle: Muscle, samples: Samples, *, ring: str) -> FloatArray:
+    """Return weight times direction of `muscle` at `samples`, shape (k, 3).
+
+    Right muscles are evaluated as the left one on mirrored points, so that both sides agree to the
+    last bit.
+    """
+    right = muscle.name.endswith(".R")
+    left = mirrored(muscle) if right else muscle
+    points, normals = samples.points, samples.normals
+    flip = np.array([-1.0, 1.0, 1.0])
+    if right:
+        points, normals = points * flip, normals * flip
+    assert not isinstance(left, LidMuscle)
+    if isinstance(left, SphincterMuscle):
+        weight = left.weights(points, profile=ring)
+    else:
+        weight = left.weights(points)
+    weight = weight * share_of(left, points, samples.jaw)
+    direction = _along_skin(left, left.directions(points), normals)
+    force = weight[:, None] * direction
+    return force * flip if right else force
+
+
+def share_of(muscle: Muscle, points: FloatArray, jaw: FloatArray) -> FloatArray:
+    """Return the part of its own weight that a left or midline muscle has at `points`, shape (k,).
+
+    Paired muscles share the midline; levators act on the upper side of the lip slit, depressors on
+    the lower; the cheek-raising part of the orbital ring is its lower lateral sector.
+    """
+    share = np.ones(len(points))
+    if "." in muscle.name:
+        share *= _smoothstep(-MIDLINE_BLEND_MM, MIDLINE_BLEND_MM, points[:, 0])
+    if isinstance(muscle, SphincterMuscle) and muscle.sector == "lower_lateral":
+        # Whole, the ring also pulls the brow down and AU6 frowns.
+        share *= 1.0 - 0.88 * _smoothstep(-2.0, 8.0, points[:, 1])
+        share *= 0.15 + 0.85 * _smoothstep(12.0, 26.0, points[:, 0])
+    acts_on = "skin" if isinstance(muscle, LidMuscle) else muscle.acts_on
+    if acts_on == "upper_lip":
+        share *= 1.0 - jaw
+    elif acts_on == "lower_lip":
+        share *= jaw
+    return share
+
+
+def moving_pull(head: Head, tissue: TissueModel, muscles: Sequence[Muscle], *, ring: str) -> Pull:
+    """Return the muscles for mode "current", `scale` holding the force scales at activation 1."""
+    n = tissue.node_count
+    points, jaw = tissue.sheet.points, head.jaw_weight[:n]
+    kinds, shapes, scales, shares = [], [], [], []
+    for muscle in muscles:
+        if isinstance(muscle, LidMuscle):
+            kinds.append(0)
+            shapes.append(np.zeros(16))
+            scales.append(0.0)
+            shares.append(np.zeros(n))
+            continue
+        right = muscle.name.endswith(".R")
+        here = points * np.array([-1.0, 1.0, 1.0]) if right else points
+        share = share_of(mirrored(muscle) if right else muscle, here, jaw) * tissue.scale
+        share[tissue.held] = 0.0
+        kinds.append({"linear": 0, "sphincter": 1, "sheet": 2}[muscle.kind])
+        shapes.append(packed_shape(muscle, ring=ring))
+        scales.append(muscle.force_scale)
+        shares.append(share)
+    return Pull(np.array(kinds, np.int32), np.array(shapes), np.array(scales), np.array(shares))
+
+
+def packed_shape(muscle: Muscle, *, ring: str) -> FloatArray:
+    """Return a muscle's geometry as the kernel reads it, shape (16,).
+
+    Linear: attachment (0-2), unit fibre (3-5), length 6, angle 7 (radians), δ 8, η 9.
+    Sphincter: plane point (0-2), e_x (3-5), e_y (6-8), epicentre (9-11), a 12, b 13,
+    literal 14, ring peak 15. Sheet: middle of the attachment line (0-2), pull (3-5), length 6,
+    δ 7, η 8.
+    """
+    g = np.zeros(16)
+    if isinstance(muscle, LinearMuscle):
+        attachment, insertion = np.array(muscle.attachment), np.array(muscle.insertion)
+        length = math.dist(muscle.attachment, muscle.insertion)
+        g[0:3], g[3:6] = attachment, (insertion - attachment) / length
+        g[6:10] = length, math.radians(muscle.angle), muscle.radius / length, muscle.strength
+    elif isinstance(muscle, SphincterMuscle):
+        normal = np.array(muscle.normal) / math.sqrt(sum(c * c for c in muscle.normal))
+        e_x = np.array([1.0, 0.0, 0.0]) - normal * normal[0]
+        e_x /= math.sqrt(e_x @ e_x)
+        g[0:3], g[3:6], g[6:9] = muscle.plane, e_x, np.cross(normal, e_x)
+        g[9:12] = muscle.center
+        g[12:16] = muscle.semi_major, muscle.semi_minor, float(ring == "literal"), RING_PEAK
+    elif isinstance(muscle, SheetMuscle):
+        attachment_middle = np.mean(muscle.attachment, axis=0)
+        pull = attachment_middle - np.mean(muscle.insertion, axis=0)
+        length = math.sqrt(pull @ pull)
+        g[0:3], g[3:6] = attachment_middle, pull / length
+        g[6:9] = length, muscle.radius / length, muscle.strength
+    return g
+
+
+def _along_skin(muscle: Muscle, direction: FloatArray, normals: FloatArray) -> FloatArray:
+    """Return directions without what would press the skin into the bone.
+
+    Linear muscles lose their inward part, sheets and the orbital ring their whole normal part;
+    the ring of the mouth keeps it, to pout. Attachments lie deeper than the skin they pull, and
+    forces into the bone only strain the layers.
+    """
+    if isinstance(muscle, SphincterMuscle) and not muscle.tangential:
+        return direction
+    across = (direction * normals).sum(axis=1, keepdims=True)
+    if isinstance(muscle, LinearMuscle):
+        across = np.minimum(across, 0.0)
+    direction = direction - across * normals
+    norm = np.linalg.norm(direction, axis=1, keepdims=True)
+    return np.asarray(direction / np.maximum(norm, 1e-9))
+
+
+def _quadrature(tissue: TissueModel, nodes: Samples) -> tuple[Samples, FloatArray, FloatArray]:
+    """Return sample points over every polygon, their bilinear weights, and the area of each."""
+    shape = _bilinear(QUADRATURE)
+    corners = np.where(
+        tissue.sheet.polygons >= 0, tissue.sheet.polygons, tissue.sheet.polygons[:, :1]
+    )
+    points = np.einsum("gk,pkc->pgc", shape, nodes.points[corners]).reshape(-1, 3)
+    normals = np.einsum("gk,pkc->pgc", shape, nodes.normals[corners]).reshape(-1, 3)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    jaw = np.einsum("gk,pk->pg", shape, nodes.jaw[corners]).ravel()
+    reference = tissue.sheet.node_area.mean() / tissue.scale.mean()
+    area = np.repeat(tissue.sheet.polygon_area / (reference * len(shape)), len(shape))
+    return Samples(points, normals, jaw), shape, area
+
+
+def _bilinear(count: int) -> FloatArray:
+    grid = (np.arange(count) + 0.5) / count
+    return np.array(
+        [[(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v] for u in grid for v in grid]
+    )
+
+
+def _lump(tissue: TissueModel, shape: FloatArray, density: FloatArray) -> FloatArray:
+    polygons = tissue.sheet.polygons
+    corners = np.where(polygons >= 0, polygons, polygons[:, :1])
+    share = np.einsum("gk,pgc->pkc", shape, density.reshape(len(polygons), len(shape), 3))
+    force = np.zeros((tissue.node_count, 3))
+    for k in range(4):
+        np.add.at(force, corners[:, k], share[:, k])
+    return force
+
+
+def _smooth(tissue: TissueModel, force: FloatArray, passes: int) -> FloatArray:
+    """Return `force` with its density smoothed over neighbours, its resultant restored."""
+    area = np.maximum(tissue.scale, 0.05)[:, None]
+    for _ in range(passes):
+        density = force / area
+        smoothed = (0.5 * density + 0.5 * (tissue.sheet.neighbor_mean @ density)) * area
+        before = math.sqrt((force.sum(axis=0) ** 2).sum())
+        after = math.sqrt((smoothed.sum(axis=0) ** 2).sum())
+        force = smoothed * (before / after) if before > 1.0e-3 and after > 0.0 else smoothed
+    return force
+
+
+def _smoothstep(low: float, high: float, x: FloatArray) -> FloatArray:
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return np.asarray(t * t * (3.0 - 2.0 * t))

@@ -1,0 +1,230 @@
+"""Layers of commands, mixed muscle by muscle, every change faded so that nothing snaps."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .arrays import FloatArray
+from .channels import GROUPS
+from .rig import Rig
+from .timeline import LAYERS, Keyframe, ticks
+
+
+@dataclass
+class Held:
+    """What one layer's writers have asked for, by name, and how much of the face they claim."""
+
+    action_units: dict[str, float] = field(default_factory=dict)
+    muscles: dict[str, float] = field(default_factory=dict)
+    axes: dict[tuple[str, str], float] = field(default_factory=dict)
+    emotion: tuple[str, float] | None = None
+    weight: float = 1.0
+    expires: int | None = None
+    fade_out: int = 0
+
+    @property
+    def empty(self) -> bool:
+        """True when the layer asks for nothing."""
+        return not (self.action_units or self.muscles or self.axes)
+
+
+@dataclass
+class Ramp:
+    """A vector on its way from `start` to `target`, each entry in its own time.
+
+    Attributes:
+        start, target: Values, shape (channels,).
+        begin: Tick at which each entry's way began, shape (channels,).
+        length: Ticks it takes, shape (channels,); 0 is at once.
+    """
+
+    start: FloatArray
+    target: FloatArray
+    begin: FloatArray
+    length: FloatArray
+
+    @classmethod
+    def zeros(cls, count: int) -> Ramp:
+        """Return a ramp at rest at 0."""
+        return cls(*(np.zeros(count) for _ in range(4)))
+
+    def at(self, tick: int) -> FloatArray:
+        """Return the values at `tick`: an ease in and out, level at both ends."""
+        done = np.clip((tick - self.begin) / np.maximum(self.length, 1.0), 0.0, 1.0)
+        done[self.length == 0.0] = 1.0
+        eased = done * done * (3.0 - 2.0 * done)
+        return np.asarray(self.start + (self.target - self.start) * eased)
+
+    def end(self) -> int:
+        """Return the tick at which the last entry arrives."""
+        return int((self.begin + self.length).max())
+
+    def move(self, target: FloatArray, tick: int, length: int) -> None:
+        """Send the entries whose target changes on a new way from where they are."""
+        changed = target != self.target
+        self.start[changed] = self.at(tick)[changed]
+        self.target[changed] = target[changed]
+        self.begin[changed] = tick
+        self.length[changed] = length
+
+
+class Mixer:
+    """The commands of one face: what each layer holds, and the one vector they make together."""
+
+    def __init__(self, rig: Rig) -> None:
+        self._rig = rig
+        count = rig.channels.count
+        self._held = {layer: Held() for layer in LAYERS}
+        self._values = {layer: Ramp.zeros(count) for layer in LAYERS}
+        self._shares = {layer: Ramp.zeros(count) for layer in LAYERS}
+        self._settled_at = 0
+        self._merged: FloatArray | None = None
+
+    def apply(self, keyframe: Keyframe, tick: int) -> None:
+        """Take a command that starts at `tick`; `Rig.check` has passed it."""
+        held = self._held[keyframe.layer]
+        if keyframe.replace:
+            held.action_units, held.muscles, held.axes, held.emotion = {}, {}, {}, None
+        if keyframe.emotion is not None:
+            held.emotion = keyframe.emotion
+            held.action_units = self._emotion_units(*keyframe.emotion)
+        _merge(held.action_units, keyframe.action_units)
+        _merge(held.muscles, keyframe.muscles)
+        for group in GROUPS:
+            for axis, value in getattr(keyframe, group).items():
+                held.axes[group, axis] = value
+        held.weight = keyframe.weight
+        held.expires = None
+        if keyframe.hold is not None:
+            held.expires = tick + ticks(keyframe.fade) + ticks(keyframe.hold)
+            held.fade_out = ticks(keyframe.fade_out)
+        self._retarget(keyframe.layer, tick, ticks(keyframe.fade))
+
+    def at(self, tick: int) -> FloatArray:
+        """Return the merged command at `tick`, shape (channels,)."""
+        self._expire(tick)
+        if self._merged is None or tick <= self._settled_at:
+            self._merged = self._merge_layers(tick)
+        return self._merged
+
+    def changing(self, tick: int) -> bool:
+        """Return whether the command still moves at `tick`."""
+        return tick <= self._settled_at
+
+    def due(self, tick: int) -> bool:
+        """Return whether a layer's time is up at `tick`: a sleeping face must wake."""
+        return any(h.expires is not None and tick >= h.expires for h in self._held.values())
+
+    def report(self, tick: int) -> dict[str, object]:
+        """Return what each layer holds and the merged command, as plain data."""
+        return {
+            "layers": {
+                layer: self._layer_report(held)
+                for layer, held in self._held.items()
+                if not held.empty or held.emotion is not None
+            },
+            "merged": self._merged_report(tick),
+        }
+
+    def moved_to(self, rig: Rig, tick: int) -> Mixer:
+        """Return these commands on a derived `rig`, where they stand, for a live edit."""
+        moved = copy.deepcopy(self)
+        moved._rig = rig
+        for layer in LAYERS:
+            moved._retarget(layer, tick, 0)
+        return moved
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Mixer:
+        twin = Mixer(self._rig)
+        twin._held = copy.deepcopy(self._held, memo)
+        twin._values = copy.deepcopy(self._values, memo)
+        twin._shares = copy.deepcopy(self._shares, memo)
+        twin._settled_at = self._settled_at
+        return twin
+
+    def _emotion_units(self, label: str, intensity: float) -> dict[str, float]:
+        terms = self._rig.resolve_emotion(label).terms
+        return {term.key: term.intensity * intensity for term in terms}
+
+    def _expire(self, tick: int) -> None:
+        for layer, held in self._held.items():
+            if held.expires is not None and tick >= held.expires:
+                self._held[layer] = Held()
+                self._retarget(layer, tick, held.fade_out)
+
+    def _retarget(self, layer: str, tick: int, fade: int) -> None:
+        """Point the layer's ramps at what it now holds."""
+        held, values, shares = self._held[layer], self._values[layer], self._shares[layer]
+        target, claimed = self._vector(held)
+        # A channel that nobody claimed takes its value at once and fades in by its share; one
+        # that is let go keeps its value and fades out by its share.
+        fresh = claimed & (shares.at(tick) == 0.0)
+        values.start[fresh] = values.target[fresh] = target[fresh]
+        values.length[fresh] = 0.0
+        values.move(np.where(claimed, target, values.target), tick, fade)
+        shares.move(np.where(claimed, held.weight, 0.0), tick, fade)
+        self._settled_at = max(values.end(), shares.end(), self._settled_at, tick)
+        self._merged = None
+
+    def _vector(self, held: Held) -> tuple[FloatArray, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
+        channels = self._rig.channels
+        target = self._rig.contraction(held.action_units)
+        claimed = target != 0.0
+        for name, value in held.muscles.items():
+            index = channels.muscle_names.index(name)
+            target[index], claimed[index] = value, True
+        for (group, axis), value in held.axes.items():
+            index = channels.index(group, axis)
+            target[index], claimed[index] = value, True
+        return target, claimed
+
+    def _merge_layers(self, tick: int) -> FloatArray:
+        merged = np.zeros(self._rig.channels.count)
+        for layer in LAYERS:
+            share = self._shares[layer].at(tick)
+            merged = merged * (1.0 - share) + self._values[layer].at(tick) * share
+        return merged
+
+    def _layer_report(self, held: Held) -> dict[str, object]:
+        report: dict[str, object] = {
+            "action_units": dict(held.action_units),
+            "muscles": dict(held.muscles),
+            "weight": held.weight,
+        }
+        for group in GROUPS:
+            axes = {axis: v for (name, axis), v in held.axes.items() if name == group}
+            if axes:
+                report[group] = axes
+        if held.emotion is not None:
+            report["emotion"] = {"label": held.emotion[0], "intensity": held.emotion[1]}
+        return report
+
+    def _merged_report(self, tick: int) -> dict[str, object]:
+        merged, channels = self.at(tick), self._rig.channels
+        units: dict[str, float] = {}
+        for layer in LAYERS:
+            units.update(self._held[layer].action_units)
+        report: dict[str, object] = {
+            "action_units": units,
+            "muscles": {
+                name: round(float(value), 4)
+                for name, value in zip(channels.muscle_names, merged, strict=False)
+                if value != 0.0
+            },
+        }
+        for group, axes in GROUPS.items():
+            report[group] = {axis: float(merged[channels.index(group, axis)]) for axis in axes}
+        return report
+
+
+def _merge(held: dict[str, float], named: Mapping[str, float]) -> None:
+    """Take the named values into `held`; 0 lets go of a name."""
+    for name, value in named.items():
+        if value == 0.0:
+            held.pop(name, None)
+        else:
+            held[name] = value

@@ -1,0 +1,418 @@
+"""A rig: one head with its tissue, muscles, action units and emotions, named by its content."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from .arrays import FloatArray
+from .cache import content_key
+from .channels import GROUPS, LIMITS, Channels
+from .emotion import Emotion, find_emotion
+from .errors import EngineError, InvalidValue, UnknownName
+from .facs import ActionUnit, parse_facs, split_side
+from .head import Head, paper_head, standard_head
+from .jaw import JawHinge
+from .muscle import LidMuscle, Muscle, mirrored
+from .rig_data import load_action_units, load_emotions, load_muscles
+from .timeline import LAYERS, Keyframe
+from .tissue import PAPER_PARAMETERS, TissueParameters
+
+BUILTIN_RIGS = ("standard", "paper")
+MAX_ACTIVATION = 1.5
+"""Greatest activation of a muscle, after sums: beyond it the springs leave their measured range."""
+PAPER_FORCE_SHARE = 0.42
+"""Force scales of the `paper` rig against the standard's: its tissue has no pre-tension to move."""
+EDITABLE = (
+    "attachment",
+    "insertion",
+    "center",
+    "plane",
+    "normal",
+    "radius",
+    "angle",
+    "strength",
+    "force_scale",
+    "semi_major",
+    "semi_minor",
+    "hoop",
+    "upper",
+    "lower",
+)
+
+
+@dataclass(frozen=True)
+class Model:
+    """Which of the declared forms of the physics a face runs.
+
+    Attributes:
+        integrator: "rk2" (midpoint), "heun", "symplectic_euler" or "rk4".
+        forces: "rest" (weights from the rest pose) or "current" (from the moving skin).
+        springs: "continuous" or "literal" (Eq. 20 as printed).
+        sphincter: "ring" or "literal" (Eq. 11 as printed).
+    """
+
+    integrator: str = "rk2"
+    forces: str = "rest"
+    springs: str = "continuous"
+    sphincter: str = "ring"
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if value not in MODEL_CHOICES[f.name]:
+                raise UnknownName(f"model {f.name}", str(value), MODEL_CHOICES[f.name])
+
+    @classmethod
+    def for_rig(cls, rig: Rig, **choices: str) -> Model:
+        """Return the rig's own model with `choices` in place.
+
+        Raises:
+            UnknownName: For a form that does not exist.
+        """
+        return replace(rig.model, **choices)
+
+
+MODEL_CHOICES: Mapping[str, tuple[str, ...]] = {
+    "integrator": ("rk2", "heun", "symplectic_euler", "rk4"),
+    "forces": ("rest", "current"),
+    "springs": ("continuous", "literal"),
+    "sphincter": ("ring", "literal"),
+}
+PAPER_MODEL = Model(forces="current", springs="literal", sphincter="literal")
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """Everything that makes one face move.
+
+    Attributes:
+        name: "standard", "paper", or what it was derived as.
+        head: Surface, skin, parts.
+        parameters: Constants of its tissue.
+        muscles: In channel order.
+        action_units: By name.
+        emotions: By name.
+        jaw: Its hinge.
+        model: The forms of the physics it runs unless a session says otherwise.
+    """
+
+    name: str
+    head: Head
+    parameters: TissueParameters
+    muscles: tuple[Muscle, ...]
+    action_units: Mapping[str, ActionUnit]
+    emotions: Mapping[str, Emotion]
+    jaw: JawHinge = field(default_factory=JawHinge)
+    model: Model = field(default_factory=Model)
+
+    @cached_property
+    def id(self) -> str:
+        """Hash of the rig's content: the same face has the same id everywhere."""
+        head = self.head
+        return content_key(
+            head.points,
+            head.polygons,
+            head.depth,
+            head.anchor_weight,
+            head.drawn.vertices,
+            head.drawn.colors,
+            self.parameters,
+            self.muscles,
+            sorted(self.action_units.items()),
+            sorted(self.emotions.items()),
+            self.jaw,
+            self.model,
+        )[:16]
+
+    @cached_property
+    def channels(self) -> Channels:
+        """Order of the numbers a command sets."""
+        return Channels(tuple(muscle.name for muscle in self.muscles))
+
+    @property
+    def muscle_names(self) -> tuple[str, ...]:
+        """Names of the muscles, in channel order."""
+        return self.channels.muscle_names
+
+    def muscle(self, name: str) -> Muscle:
+        """Return a muscle by its full name.
+
+        Raises:
+            UnknownName: If there is none.
+        """
+        for muscle in self.muscles:
+            if muscle.name == name:
+                return muscle
+        raise UnknownName("muscle", name, self.muscle_names)
+
+    def resolve_emotion(self, label: str) -> Emotion:
+        """Return the emotion that `label` names.
+
+        Raises:
+            UnknownName: With the nearest known labels.
+        """
+        return find_emotion(self.emotions, label)
+
+    def resolve_unit(self, key: str) -> tuple[ActionUnit, str]:
+        """Return the unit and side ("", "L", "R") that "AU12", "L12" or "12" names.
+
+        Raises:
+            UnknownName: If the rig has no such unit.
+        """
+        try:
+            name, side = split_side(key)
+        except EngineError:
+            name, side = key, ""
+        if key in self.action_units:
+            return self.action_units[key], ""
+        if name not in self.action_units:
+            raise UnknownName("action unit", key, self.action_units)
+        return self.action_units[name], side
+
+    def contraction(self, units: Mapping[str, float]) -> FloatArray:
+        """Return the channel vector of action units at intensities: sums, held to their limits.
+
+        Args:
+            units: Intensity 0..1 by "AU12", "L12" or "R12".
+
+        Raises:
+            UnknownName: For a unit the rig does not have.
+        """
+        total = np.zeros(self.channels.count)
+        for key in sorted(units):
+            unit, side = self.resolve_unit(key)
+            total += self._unit_vector(unit, side) * unit.scale(units[key])
+        return self._limited(total)
+
+    def check(self, keyframe: Keyframe) -> list[str]:
+        """Return warnings about a command that can be played.
+
+        Raises:
+            UnknownName: For a unit, muscle, layer, emotion or axis that is not there.
+            InvalidValue: For a number outside its range.
+        """
+        if keyframe.layer not in LAYERS:
+            raise UnknownName("layer", keyframe.layer, LAYERS)
+        warnings = []
+        for key, value in keyframe.action_units.items():
+            unit, _ = self.resolve_unit(key)
+            _check_range(key, value, 0.0, 1.0)
+            if not unit.muscles and unit.jaw == 0.0:
+                warnings.append(f"{key} moves nothing on this rig")
+        for name, value in keyframe.muscles.items():
+            self.muscle(name)
+            _check_range(name, value, 0.0, MAX_ACTIVATION)
+        for group, axes in GROUPS.items():
+            for axis, value in getattr(keyframe, group).items():
+                if axis not in axes:
+                    raise UnknownName(f"{group} axis", axis, axes)
+                _check_range(f"{group}.{axis}", value, *LIMITS[group, axis])
+        if keyframe.emotion is not None:
+            self.resolve_emotion(keyframe.emotion[0])
+            _check_range("intensity", keyframe.emotion[1], 0.0, 1.0)
+        _check_range("weight", keyframe.weight, 0.0, 1.0)
+        for name in ("fade", "fade_out", "hold"):
+            value = getattr(keyframe, name)
+            if value is not None:
+                _check_range(name, value, 0.0, 3600.0)
+        return warnings
+
+    def derive(
+        self,
+        *,
+        tissue: Mapping[str, object] | None = None,
+        muscles: Mapping[str, Mapping[str, object]] | None = None,
+        action_units: Mapping[str, Mapping[str, object]] | None = None,
+        emotions: Mapping[str, object] | None = None,
+        name: str | None = None,
+    ) -> Rig:
+        """Return this rig with edits; the same edits give the same id.
+
+        Args:
+            tissue: Tissue parameters by name.
+            muscles: By full muscle name, the fields to change.
+            action_units: By name, `{"muscles": {"zygomatic_major": 1.0}, "jaw": 0, "title": …}`.
+            emotions: By name, a FACS string, or `{"recipe": …, "synonyms": […]}`.
+            name: Of the new rig.
+
+        Raises:
+            UnknownName: For anything named that is not there.
+            InvalidValue: For a value outside its limits.
+        """
+        edited = tuple(
+            _edited_muscle(muscle, (muscles or {}).get(muscle.name, {})) for muscle in self.muscles
+        )
+        for muscle_name in muscles or {}:
+            self.muscle(muscle_name)
+        units = dict(self.action_units)
+        for unit_name, spec in (action_units or {}).items():
+            units[unit_name] = self._custom_unit(unit_name, spec)
+        rig = replace(
+            self,
+            name=name or self.name,
+            parameters=self.parameters.edited(tissue or {}),
+            muscles=edited,
+            action_units=units,
+        )
+        labels = dict(self.emotions)
+        for label, emotion_spec in (emotions or {}).items():
+            labels[label.strip().lower()] = rig._custom_emotion(label, emotion_spec)
+        return replace(rig, emotions=labels)
+
+    def describe(self) -> dict[str, object]:
+        """Return the rig as plain data: what clients build their panels from."""
+        head = self.head
+        return {
+            "id": self.id,
+            "name": self.name,
+            "model": asdict(self.model),
+            "muscles": [{**asdict(muscle), "activation": [0.0, 1.0]} for muscle in self.muscles],
+            "action_units": [
+                {**asdict(unit), "range": [0.0, 1.0]} for unit in self.action_units.values()
+            ],
+            "emotions": [asdict(emotion) for emotion in self.emotions.values()],
+            "tissue": self.parameters.to_json(),
+            "jaw": {axis: list(LIMITS["jaw", axis]) for axis in GROUPS["jaw"]},
+            "gaze": {axis: list(LIMITS["gaze", axis]) for axis in GROUPS["gaze"]},
+            "head": {axis: list(LIMITS["head", axis]) for axis in GROUPS["head"]},
+            "layers": list(LAYERS),
+            "mesh": {
+                "surface_vertices": len(head.points),
+                "tissue_nodes": 3 * head.sheet_count,
+                "tissue_polygons": len(head.polygons),
+                "drawn_vertices": len(head.drawn.vertices),
+                "drawn_triangles": len(head.drawn.triangles),
+            },
+        }
+
+    def _unit_vector(self, unit: ActionUnit, side: str) -> FloatArray:
+        vector = np.zeros(self.channels.count)
+        for index, name in enumerate(self.muscle_names):
+            stem, _, muscle_side = name.partition(".")
+            if side and muscle_side and muscle_side != side:
+                continue
+            # Half of a one-sided unit's midline muscle acts: it has only one half to give.
+            half = 0.5 if side and not muscle_side else 1.0
+            vector[index] = half * unit.muscles.get(name, unit.muscles.get(stem, 0.0))
+        vector[self.channels.index("jaw", "pitch")] = unit.jaw * (0.5 if side else 1.0)
+        return vector
+
+    def _limited(self, vector: FloatArray) -> FloatArray:
+        m = self.channels.muscle_count
+        vector[:m] = np.clip(vector[:m], -MAX_ACTIVATION, MAX_ACTIVATION)
+        pitch = self.channels.index("jaw", "pitch")
+        vector[pitch] = min(
+            max(vector[pitch], LIMITS["jaw", "pitch"][0]), LIMITS["jaw", "pitch"][1]
+        )
+        return vector
+
+    def _custom_unit(self, name: str, spec: Mapping[str, object]) -> ActionUnit:
+        known = {"muscles", "jaw", "title", "region"}
+        for key in spec:
+            if key not in known:
+                raise UnknownName("action unit field", key, known)
+        weights = spec.get("muscles", {})
+        if not name or not isinstance(weights, Mapping):
+            raise InvalidValue(
+                f"action unit {name!r}: expected {{'muscles': {{'zygomatic_major': 1.0}}}}"
+            )
+        stems = {n.partition(".")[0] for n in self.muscle_names} | set(self.muscle_names)
+        for muscle, weight in weights.items():
+            if muscle not in stems:
+                raise UnknownName("muscle", str(muscle), stems)
+            _check_range(f"{name}: weight of {muscle}", weight, -MAX_ACTIVATION, MAX_ACTIVATION)
+        jaw = spec.get("jaw", 0.0)
+        _check_range(f"{name}: jaw", jaw, *LIMITS["jaw", "pitch"])
+        return ActionUnit(
+            name=name,
+            title=str(spec.get("title", name)),
+            region=str(spec.get("region", "custom")),
+            muscles={str(k): float(v) for k, v in weights.items()},
+            jaw=float(jaw),  # type: ignore[arg-type]
+            source="yours",
+        )
+
+    def _custom_emotion(self, label: str, spec: object) -> Emotion:
+        recipe = spec.get("recipe") if isinstance(spec, Mapping) else spec
+        if not isinstance(recipe, str) or not label.strip():
+            raise InvalidValue(f"emotion {label!r}: expected a FACS string such as '6C+12D'")
+        for term in parse_facs(recipe):
+            self.resolve_unit(term.key)
+        synonyms = spec.get("synonyms", ()) if isinstance(spec, Mapping) else ()
+        words = tuple(str(word).strip().lower() for word in synonyms)
+        return Emotion(label.strip().lower(), recipe, "yours", words)
+
+
+@lru_cache(maxsize=4)
+def builtin_rig(name: str) -> Rig:
+    """Return a built-in rig.
+
+    Raises:
+        UnknownName: If `name` is not one of `BUILTIN_RIGS`.
+    """
+    if name == "standard":
+        head = standard_head()
+        return rig_from_head(head, parameters=TissueParameters())
+    if name == "paper":
+        rig = rig_from_head(paper_head(), parameters=PAPER_PARAMETERS)
+        weaker = tuple(_scaled(muscle, PAPER_FORCE_SHARE) for muscle in rig.muscles)
+        return replace(rig, muscles=weaker, model=PAPER_MODEL)
+    raise UnknownName("rig", name, BUILTIN_RIGS)
+
+
+def rig_from_head(head: Head, *, parameters: TissueParameters) -> Rig:
+    """Return `head` with the built-in muscles, action units and emotions on it."""
+    left = load_muscles(head)
+    muscles: list[Muscle] = []
+    for muscle in left:
+        muscles.append(muscle)
+        if muscle.name.endswith(".L"):
+            muscles.append(mirrored(muscle))
+    return Rig(
+        name=head.name,
+        head=head,
+        parameters=parameters,
+        muscles=tuple(muscles),
+        action_units=load_action_units(),
+        emotions=load_emotions(),
+    )
+
+
+def _scaled(muscle: Muscle, share: float) -> Muscle:
+    if isinstance(muscle, LidMuscle):
+        return muscle
+    return replace(muscle, force_scale=muscle.force_scale * share)
+
+
+def _edited_muscle(muscle: Muscle, changes: Mapping[str, object]) -> Muscle:
+    if not changes:
+        return muscle
+    allowed = {f.name for f in fields(muscle)} & set(EDITABLE)
+    edits: dict[str, object] = {}
+    for name, value in changes.items():
+        if name not in allowed:
+            raise UnknownName(f"field of muscle {muscle.name}", name, allowed)
+        edits[name] = _like(f"{muscle.name}.{name}", getattr(muscle, name), value)
+    return replace(muscle, **edits)  # type: ignore[arg-type]
+
+
+def _like(name: str, old: object, value: object) -> object:
+    """Return `value` in the shape of `old`: a number, a point, or a pair of points."""
+    if isinstance(old, tuple):
+        if not isinstance(value, list | tuple) or len(value) != len(old):
+            raise InvalidValue(f"{name} is {value!r}; expected {len(old)} entries like {old!r}")
+        return tuple(_like(name, o, v) for o, v in zip(old, value, strict=True))
+    _check_range(name, value, -1.0e4, 1.0e4)
+    return float(value)  # type: ignore[arg-type]
+
+
+def _check_range(name: str, value: object, low: float, high: float) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InvalidValue(f"{name} is {value!r}; expected a finite number")
+    if not low <= value <= high:
+        raise InvalidValue(f"{name} is {value:g}; it must lie between {low:g} and {high:g}")

@@ -1,0 +1,294 @@
+"""The simulator: the engine's only state, a batch of faces of one rig, stepped tick by tick."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .arrays import FloatArray
+from .assembly import Assembly, compile_rig
+from .dynamics import Pull, Skull, Workspace, advance, workspace
+from .errors import InvalidValue, UnknownName
+from .frame import Frame, Pose
+from .mixing import Mixer
+from .rig import Model, Rig
+from .skull import pose_held, pose_skull
+from .timeline import TICKS_PER_SECOND, Keyframe
+
+STILL_SPEED = 0.2
+"""Speed under which the tissue counts as still, mm/s: 3 µm a tick, below the stream's grid."""
+STILL_TICKS = 20
+"""Ticks a face must have been still, and its commands too, before it sleeps."""
+ARRIVED = 1.0e-4
+"""Distance, activation or degrees, at which a lagging channel takes its command's value."""
+FARTHEST_MM = 90.0
+"""Displacement that no face reaches: beyond it the simulation has diverged."""
+
+
+@dataclass
+class FaceState:
+    """Everything of one face that changes; what moves with it between simulators."""
+
+    x: FloatArray
+    v: FloatArray
+    signals: FloatArray
+    mixer: Mixer
+    tick: int = 0
+    still_ticks: int = 0
+    asleep: bool = False
+    diverged: bool = False
+    posed: tuple[float, ...] | None = None
+    skull: Skull | None = None
+    work: Workspace | None = field(default=None, repr=False)
+
+
+class Simulator:
+    """Steps any number of faces of one rig and model; each as if it were alone.
+
+    Example:
+        >>> simulator = Simulator(builtin_rig("standard"))
+        >>> simulator.add("a")
+        >>> simulator.apply("a", Keyframe(action_units={"AU12": 1.0}))
+        >>> frames = simulator.step()
+
+    A face's motion depends on its own commands alone, bit for bit: not on its neighbours, on
+    threads, or on when the simulator was made.
+    """
+
+    TICKS_PER_SECOND = TICKS_PER_SECOND
+
+    def __init__(
+        self,
+        rig: Rig,
+        *,
+        model: Model | None = None,
+        substeps: int | None = None,
+        threads: int | None = None,
+    ) -> None:
+        """Compile `rig`.
+
+        Args:
+            rig: The rig of all faces.
+            model: Forms of the physics; the rig's own if None.
+            substeps: Integration steps a tick; None takes the least that is stable.
+            threads: Faces stepped at a time; None takes one a core.
+
+        Raises:
+            InvalidValue: If `substeps` is fewer than stability asks for.
+        """
+        self.rig = rig
+        self.model = model or rig.model
+        self.assembly: Assembly = compile_rig(rig, self.model, substeps)
+        self._faces: dict[str, FaceState] = {}
+        count = threads or os.cpu_count() or 1
+        self._pool = ThreadPoolExecutor(count) if count > 1 else None
+
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """Names of the faces, in order of arrival."""
+        return tuple(self._faces)
+
+    def add(self, face: str, *, state: FaceState | None = None) -> None:
+        """Add a face at rest, or one that another simulator let go.
+
+        Raises:
+            InvalidValue: If the name is taken, or the state is of another head.
+        """
+        if face in self._faces:
+            raise InvalidValue(f"there is a face named {face!r} already")
+        if state is None:
+            rest = self.assembly.tissue.arrays.rest
+            state = FaceState(
+                rest.copy(), np.zeros_like(rest), np.zeros(self.rig.channels.count), Mixer(self.rig)
+            )
+        else:
+            if state.x.shape != self.assembly.tissue.arrays.rest.shape:
+                raise InvalidValue("the state belongs to a head with another number of nodes")
+            state.mixer = state.mixer.moved_to(self.rig, state.tick)
+            state.posed, state.skull, state.work = None, None, None
+            state.asleep, state.still_ticks = False, 0
+        self._faces[face] = state
+
+    def remove(self, face: str) -> FaceState:
+        """Take a face out and return its state.
+
+        Raises:
+            UnknownName: If there is no such face.
+        """
+        state = self._face(face)
+        del self._faces[face]
+        return state
+
+    def apply(self, face: str, keyframe: Keyframe) -> int:
+        """Give a command that takes effect at the next step, and return that tick.
+
+        Raises:
+            UnknownName: For a face, unit, muscle or emotion that is not there.
+            InvalidValue: For a number outside its range.
+        """
+        state = self._face(face)
+        self.rig.check(keyframe)
+        state.mixer.apply(keyframe, state.tick)
+        state.asleep, state.still_ticks = False, 0
+        return state.tick
+
+    def step(self) -> dict[str, Frame]:
+        """Advance every face by one tick and return the frames of those that were awake."""
+        for state in self._faces.values():
+            if state.asleep and state.mixer.due(state.tick):
+                state.asleep, state.still_ticks = False, 0
+            elif state.asleep:
+                state.tick += 1
+        awake = {name: state for name, state in self._faces.items() if not state.asleep}
+        if self._pool is not None and len(awake) > 1:
+            list(self._pool.map(self._step_face, awake.values()))
+        else:
+            for state in awake.values():
+                self._step_face(state)
+        return {name: self._frame(state) for name, state in awake.items()}
+
+    def frame(self, face: str) -> Frame:
+        """Return a face as it stands.
+
+        Raises:
+            UnknownName: If there is no such face.
+        """
+        return self._frame(self._face(face))
+
+    def report(self, face: str) -> dict[str, object]:
+        """Return what each layer of a face holds, and the merged command, as plain data.
+
+        Raises:
+            UnknownName: If there is no such face.
+        """
+        state = self._face(face)
+        return state.mixer.report(state.tick)
+
+    def _face(self, face: str) -> FaceState:
+        if face not in self._faces:
+            raise UnknownName("face", face, self._faces)
+        return self._faces[face]
+
+    def _step_face(self, state: FaceState) -> None:
+        state.diverged = False
+        self._lag(state)
+        self._pose(state)
+        skull, pull = self._forces(state)
+        assembly = self.assembly
+        if state.work is None:
+            arrays = assembly.tissue.arrays
+            state.work = workspace(arrays.rest.shape[1], len(arrays.springs.first))
+        advance(
+            state.x,
+            state.v,
+            assembly.substeps,
+            1.0 / (TICKS_PER_SECOND * assembly.substeps),
+            assembly.tableau,
+            assembly.tissue.arrays,
+            skull,
+            pull,
+            state.work,
+        )
+        state.tick += 1
+        self._judge(state)
+
+    def _lag(self, state: FaceState) -> None:
+        """Let muscles, jaw, gaze and head follow the command, each with its own inertia."""
+        command = state.mixer.at(state.tick)
+        gap = command - state.signals
+        state.signals = np.where(
+            np.abs(gap) < ARRIVED, command, state.signals + self.assembly.smoothing * gap
+        )
+
+    def _pose(self, state: FaceState) -> None:
+        """Turn the skull side and the held nodes with jaw and lids, if those have moved."""
+        rigid = tuple(float(v) for v in self._rigid_signals(state))
+        if rigid == state.posed and state.skull is not None:
+            return
+        jaw, lids = rigid[:3], np.array(rigid[3:])
+        state.skull = pose_skull(self.rig, self.assembly.tissue, jaw, lids)
+        held, places = pose_held(self.rig, self.assembly.tissue, jaw, lids)
+        state.x[:, held] = places
+        state.v[:, held] = 0.0
+        state.posed = rigid
+
+    def _rigid_signals(self, state: FaceState) -> FloatArray:
+        """Return jaw pitch, yaw, thrust and the four lid angles, shape (7,)."""
+        m = self.rig.channels.muscle_count
+        angles = np.einsum("m,msl->sl", state.signals[:m], self.assembly.lid_angles)
+        return np.concatenate([state.signals[m : m + 3], angles.ravel()])
+
+    def _forces(self, state: FaceState) -> tuple[Skull, Pull]:
+        assert state.skull is not None
+        assembly, m = self.assembly, self.rig.channels.muscle_count
+        activations = state.signals[:m]
+        if self.model.forces == "current":
+            active = activations != 0.0
+            pull = assembly.pull
+            return state.skull, Pull(
+                pull.kinds[active],
+                pull.shape[active],
+                pull.scale[active] * activations[active],
+                pull.share[active],
+            )
+        load = state.skull.load.copy()
+        n = assembly.tissue.node_count
+        load[:, 2 * n :] += np.tensordot(activations, assembly.basis, axes=1)
+        return state.skull._replace(load=load), assembly.pull
+
+    def _judge(self, state: FaceState) -> None:
+        """Catch a face that diverged, and let one that rests fall asleep."""
+        farthest = float(np.abs(state.x - self.assembly.tissue.arrays.rest).max())
+        if not farthest < FARTHEST_MM:  # also true for NaN
+            self._reset(state)
+            return
+        fastest = float(np.abs(state.v).max())
+        if fastest < STILL_SPEED and not self._signals_move(state):
+            state.still_ticks += 1
+        else:
+            state.still_ticks = 0
+        if state.still_ticks >= STILL_TICKS:
+            state.v[:] = 0.0
+            state.asleep = True
+
+    def _signals_move(self, state: FaceState) -> bool:
+        if state.mixer.changing(state.tick):
+            return True
+        return bool((state.mixer.at(state.tick) != state.signals).any())
+
+    def _reset(self, state: FaceState) -> None:
+        """Put a face back to rest with its commands let go; the frame says so."""
+        state.x[:] = self.assembly.tissue.arrays.rest
+        state.v[:] = 0.0
+        state.signals[:] = 0.0
+        state.mixer = Mixer(self.rig)
+        state.posed, state.skull = None, None
+        state.still_ticks, state.diverged = 0, True
+
+    def _frame(self, state: FaceState) -> Frame:
+        signals, channels = state.signals, self.rig.channels
+        m = channels.muscle_count
+        pitch, yaw, thrust, gaze_yaw, gaze_pitch, turn, nod, tilt = (float(s) for s in signals[m:])
+        gaze = (gaze_yaw, gaze_pitch)
+        pose = Pose(pitch, yaw, thrust, gaze_left=gaze, gaze_right=gaze, head=(turn, nod, tilt))
+        return Frame(
+            tick=state.tick,
+            displacements=self._surface(state, pose),
+            activations=signals[:m].copy(),
+            pose=pose,
+            asleep=state.asleep,
+            diverged=state.diverged,
+        )
+
+    def _surface(self, state: FaceState, pose: Pose) -> FloatArray:
+        """Return displacements of the sheet and of what follows it, mm, shape (s, 3)."""
+        head, n = self.rig.head, self.assembly.tissue.node_count
+        sheet = (state.x[:, :n] - self.assembly.tissue.arrays.rest[:, :n]).T
+        followers = head.points[n:]
+        ones = np.ones(len(followers))
+        rigid = self.rig.jaw.move(followers, ones, pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)
+        following = head.follow @ sheet + head.follow_jaw[:, None] * (rigid - followers)
+        return np.concatenate([sheet, following])

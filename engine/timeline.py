@@ -1,0 +1,191 @@
+"""Commands in time: keyframes in layers, and the timelines they make."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields
+from types import MappingProxyType
+
+from .errors import InvalidTrack
+from .facs import LETTERS as INTENSITY_LETTERS
+from .facs import parse_facs
+
+LAYERS = ("idle", "mood", "emotion", "speech", "puppet")
+"""Layers from the lowest to the highest; a higher one overrides a lower, muscle by muscle."""
+TICKS_PER_SECOND = 60
+MAX_SECONDS = 3600.0
+
+_NOTHING: Mapping[str, float] = MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class Keyframe:
+    """One command to a face. It moves only what it names, unless `replace` is set.
+
+    Attributes:
+        time: Seconds from the start of a timeline; ignored by a live face.
+        layer: One of `LAYERS`.
+        action_units: Intensity 0..1 by "AU12" (both sides), "L12" or "R12"; 0 lets go.
+        muscles: Raw activation 0..1 by muscle name; 0 lets go.
+        jaw: "pitch" and "yaw", degrees, "thrust", mm.
+        gaze: "yaw" and "pitch", degrees: left and up are positive.
+        head: "yaw", "pitch" and "roll", degrees: left, up, to the left shoulder.
+        emotion: Label and intensity; it replaces the layer's action units.
+        fade: Seconds over which the face moves there.
+        hold: Seconds to stay before the whole layer lets go; None stays.
+        fade_out: Seconds over which it lets go after `hold`.
+        weight: How much of the lower layers is overridden, 0..1.
+        replace: True to let go of everything else in the layer.
+    """
+
+    time: float = 0.0
+    layer: str = "puppet"
+    action_units: Mapping[str, float] = field(default_factory=dict)
+    muscles: Mapping[str, float] = field(default_factory=dict)
+    jaw: Mapping[str, float] = field(default_factory=dict)
+    gaze: Mapping[str, float] = field(default_factory=dict)
+    head: Mapping[str, float] = field(default_factory=dict)
+    emotion: tuple[str, float] | None = None
+    fade: float = 0.0
+    hold: float | None = None
+    fade_out: float = 0.4
+    weight: float = 1.0
+    replace: bool = False
+
+    def to_json(self) -> dict[str, object]:
+        """Return the keyframe as plain data, without what it does not say."""
+        empty = Keyframe()
+        data = {
+            f.name: getattr(self, f.name)
+            for f in fields(self)
+            if f.name == "time" or getattr(self, f.name) != getattr(empty, f.name)
+        }
+        if self.emotion is not None:
+            data["emotion"] = {"label": self.emotion[0], "intensity": self.emotion[1]}
+        return data
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """Keyframes in order of time, and how long the whole lasts, seconds."""
+
+    keyframes: tuple[Keyframe, ...]
+    duration: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.duration) and 0.0 < self.duration <= MAX_SECONDS):
+            raise InvalidTrack(
+                f"the duration is {self.duration!r} s; it must lie between 0 and {MAX_SECONDS:g}"
+            )
+        times = [keyframe.time for keyframe in self.keyframes]
+        for index, time in enumerate(times):
+            if not (math.isfinite(time) and time >= 0.0):
+                raise InvalidTrack(f"keyframe {index}: time is {time!r}; it must be 0 or more")
+        if times != sorted(times):
+            object.__setattr__(
+                self, "keyframes", tuple(sorted(self.keyframes, key=lambda k: k.time))
+            )
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, object]) -> Timeline:
+        """Read `{"timeline": [{"time": 0.0, …}, …], "duration": 10}`.
+
+        Without a duration the timeline ends a second after its last keyframe has played.
+
+        Raises:
+            InvalidTrack: With the keyframe and field that cannot be read.
+        """
+        entries = data.get("timeline")
+        if not isinstance(entries, list) or not entries:
+            raise InvalidTrack("a timeline needs 'timeline': a list of one or more keyframes")
+        keyframes = tuple(_keyframe(index, entry) for index, entry in enumerate(entries))
+        duration = data.get("duration")
+        if duration is None:
+            duration = 1.0 + max(k.time + k.fade + (k.hold or 0.0) for k in keyframes)
+        if isinstance(duration, bool) or not isinstance(duration, int | float):
+            raise InvalidTrack(f"'duration' is {duration!r}; expected seconds")
+        return cls(keyframes, float(duration))
+
+    def to_json(self) -> dict[str, object]:
+        """Return the timeline as `from_json` reads it."""
+        return {
+            "timeline": [keyframe.to_json() for keyframe in self.keyframes],
+            "duration": self.duration,
+        }
+
+
+def ticks(seconds: float) -> int:
+    """Return the nearest whole number of ticks in `seconds`."""
+    return round(seconds * TICKS_PER_SECOND)
+
+
+_MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head")
+_NUMBERS = ("time", "fade", "fade_out", "weight")
+_KNOWN = {f.name for f in fields(Keyframe)} | {"facs"}
+
+
+def _keyframe(index: int, entry: object) -> Keyframe:
+    if not isinstance(entry, Mapping):
+        raise InvalidTrack(f"keyframe {index}: is {entry!r}; expected an object")
+    unknown = sorted(set(entry) - _KNOWN)
+    if unknown:
+        raise InvalidTrack(
+            f"keyframe {index}: field {unknown[0]!r} is not known; known are {sorted(_KNOWN)}"
+        )
+    values: dict[str, object] = {}
+    for name in _MAPPINGS:
+        values[name] = _numbers(index, name, entry.get(name, _NOTHING))
+    if "facs" in entry:
+        values["action_units"] = {**_facs(index, entry["facs"]), **values["action_units"]}  # type: ignore[dict-item]
+    for name in _NUMBERS:
+        if name in entry:
+            values[name] = _number(index, name, entry[name])
+    if entry.get("hold") is not None:
+        values["hold"] = _number(index, "hold", entry["hold"])
+    layer = entry.get("layer", "puppet" if "emotion" not in entry else "emotion")
+    if layer not in LAYERS:
+        raise InvalidTrack(f"keyframe {index}: layer is {layer!r}; expected one of {LAYERS}")
+    values["layer"] = layer
+    values["replace"] = bool(entry.get("replace", False))
+    if "emotion" in entry:
+        values["emotion"] = _emotion(index, entry["emotion"])
+    return Keyframe(**values)  # type: ignore[arg-type]
+
+
+def _facs(index: int, value: object) -> dict[str, float]:
+
+    if not isinstance(value, str):
+        raise InvalidTrack(f"keyframe {index}: facs is {value!r}; expected a string")
+    return {term.key: term.intensity for term in parse_facs(value)}
+
+
+def _emotion(index: int, value: object) -> tuple[str, float]:
+    if isinstance(value, str):
+        return value, 1.0
+    if isinstance(value, Mapping) and isinstance(value.get("label"), str):
+        return str(value["label"]), _number(index, "emotion.intensity", value.get("intensity", 1.0))
+    raise InvalidTrack(
+        f"keyframe {index}: emotion is {value!r}; expected a label or "
+        "{'label': 'happiness', 'intensity': 0.8}"
+    )
+
+
+def _numbers(index: int, name: str, value: object) -> dict[str, float]:
+    if not isinstance(value, Mapping):
+        raise InvalidTrack(f"keyframe {index}: {name} is {value!r}; expected an object")
+    items: Iterable[tuple[object, object]] = value.items()
+    return {str(key): _intensity(index, f"{name}.{key}", number) for key, number in items}
+
+
+def _intensity(index: int, name: str, value: object) -> float:
+
+    if isinstance(value, str) and value.upper() in INTENSITY_LETTERS:
+        return INTENSITY_LETTERS[value.upper()]
+    return _number(index, name, value)
+
+
+def _number(index: int, name: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InvalidTrack(f"keyframe {index}: {name} is {value!r}; expected a finite number")
+    return float(value)

@@ -1,0 +1,147 @@
+"""What the skin of a head may not pass: lips, teeth, eyeballs; and the lids' tarsal plates."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..dynamics import Contacts, IndexArray
+from ..head import Head
+
+LIP_GAP_MM = 0.12
+"""Height that is left between closed lips, or their rest gap where that is less."""
+LIP_RING = 10
+"""Points of a half mouth ring run from 0, upper middle, over 5, the corner, to 10, lower."""
+CORNER = 5
+TOOTH_CLEARANCE_MM = {"M0": 3.0, "M1": 5.5, "M2": 5.0, "M3": 4.0}
+"""Skin before the upper dental arch, by mouth ring: the flesh of the lip lies between."""
+TOOTH_MARGIN_MM = 0.3
+TOOTH_REACH_MM = 26.0
+ARCH_BOTTOM_MM = -75.0
+"""Lower edge of the upper teeth; lips may fall back below it."""
+EYE_CLEARANCE_MM = {"E0": 12.45, "E1": 12.75, "E2": 12.75, "E3": 12.75}
+"""Least distance from the eye's centre, by lid ring: ball, cornea and the lid's own thickness."""
+LID_SHARE = {"EB": 1.0, "E0": 1.0, "E1": 1.0, "E2": 0.5}
+"""Share of the lid's angle that each ring's skull side turns by."""
+TARSAL_RINGS = ("E0", "E1")
+"""Rings that are cartilage: moved with the lid, not by forces."""
+LID_SPOKES = 16
+"""Points of an eye ring run from 0, inner canthus, over 4, top, and 8, outer canthus, to 12."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lids:
+    """The nodes that turn with the lids.
+
+    Attributes:
+        nodes: Epidermis nodes, shape (k,).
+        channel: Which angle: 0 left upper, 1 left lower, 2 right upper, 3 right lower, shape (k,).
+        share: Turn about the eye's x axis per degree of lid angle, signed, shape (k,).
+        centers: Eye centre of each, mm, shape (k, 3).
+        tarsal: Nodes that are moved, all three layers, shape (k,).
+    """
+
+    nodes: IntArray
+    channel: IntArray
+    share: FloatArray
+    centers: FloatArray
+    tarsal: BoolArray
+
+
+def ring_and_spoke(name: str) -> tuple[str, int, str]:
+    """Return ("E1", 4, "L") for the cage point "E1_4.L"; ("", -1, "") for a point without name."""
+    stem, _, side = name.partition(".")
+    ring, _, spoke = stem.partition("_")
+    return (ring, int(spoke), side) if spoke.isdigit() else (ring, -1, side)
+
+
+def lids_of(head: Head) -> Lids:
+    """Return the lid nodes of `head`; none where it has no eyes."""
+    nodes, channel, share, centers, tarsal = [], [], [], [], []
+    for node, name in enumerate(head.names[: head.sheet_count]):
+        ring, spoke, side = ring_and_spoke(name)
+        if ring not in LID_SHARE or not head.eyes:
+            continue
+        upper = 0 < spoke < LID_SPOKES // 2
+        # The margins are arcs that meet at the canthi: full turn in the middle, none there.
+        around = spoke if upper else LID_SPOKES - spoke
+        still = spoke in (0, LID_SPOKES // 2)
+        bend = 0.0 if still else math.sin(math.pi * around / (LID_SPOKES // 2)) ** 0.6
+        nodes.append(node)
+        channel.append((0 if upper else 1) + (2 if side == "R" else 0))
+        share.append(LID_SHARE[ring] * bend * (1.0 if upper else -1.0))
+        centers.append(head.eyes[1 if side == "R" else 0].center)
+        tarsal.append(ring in TARSAL_RINGS)
+    return Lids(
+        np.array(nodes, dtype=np.int64),
+        np.array(channel, dtype=np.int64),
+        np.array(share),
+        np.array(centers).reshape(-1, 3),
+        np.array(tarsal, dtype=bool),
+    )
+
+
+def contacts_of(head: Head) -> Contacts:
+    """Return the contact pairs and surfaces of `head`; empty where it has no named points."""
+    index = {name: node for node, name in enumerate(head.names[: head.sheet_count]) if name}
+    upper, lower = _lip_pairs(index)
+    points = head.points
+    tooth_nodes, tooth_clearance = _teeth(head)
+    eye_nodes, eye_centers, eye_radius = _eyes(head)
+    return Contacts(
+        upper_lip=upper,
+        lower_lip=lower,
+        lip_gap=np.minimum(LIP_GAP_MM, points[upper, 1] - points[lower, 1]),
+        tooth_nodes=tooth_nodes,
+        tooth_clearance=tooth_clearance,
+        arch=dental_arch(np.arange(40.0)),
+        arch_bottom=ARCH_BOTTOM_MM,
+        eye_nodes=eye_nodes,
+        eye_centers=np.ascontiguousarray(eye_centers.T),
+        eye_radius=eye_radius,
+    )
+
+
+def dental_arch(lateral: FloatArray) -> FloatArray:
+    """Return the depth z, mm, of the upper dental arch's front at |x| = `lateral`, mm."""
+    t = 2.0 / math.pi * np.arcsin(np.minimum(lateral / 29.0, 0.999))
+    return np.where(lateral < 28.0, 94.9 - 44.0 * t**2.1, 40.0)
+
+
+def _lip_pairs(index: dict[str, int]) -> tuple[IndexArray, IndexArray]:
+    pairs: list[tuple[int, int]] = []
+    for j in range(CORNER):
+        for side in ("",) if j == 0 else (".L", ".R"):
+            upper, lower = index.get(f"M0_{j}{side}"), index.get(f"M0_{LIP_RING - j}{side}")
+            if upper is not None and lower is not None:
+                pairs.append((upper, lower))
+    array = np.array(pairs, dtype=np.int32).reshape(-1, 2)
+    return np.ascontiguousarray(array[:, 0]), np.ascontiguousarray(array[:, 1])
+
+
+def _teeth(head: Head) -> tuple[IndexArray, FloatArray]:
+    nodes, clearance = [], []
+    for node, name in enumerate(head.names[: head.sheet_count]):
+        ring, spoke, _ = ring_and_spoke(name)
+        x, _, z = head.points[node]
+        if ring in TOOTH_CLEARANCE_MM and spoke >= 0 and abs(x) < TOOTH_REACH_MM:
+            at_rest = z - float(dental_arch(np.array([abs(x)]))[0]) - TOOTH_MARGIN_MM
+            nodes.append(node)
+            clearance.append(min(TOOTH_CLEARANCE_MM[ring], at_rest))
+    return np.array(nodes, dtype=np.int32), np.array(clearance)
+
+
+def _eyes(head: Head) -> tuple[IndexArray, FloatArray, FloatArray]:
+    nodes, centers, radius = [], [], []
+    for node, name in enumerate(head.names[: head.sheet_count]):
+        ring, spoke, side = ring_and_spoke(name)
+        if ring in EYE_CLEARANCE_MM and spoke >= 0 and head.eyes:
+            center = head.eyes[1 if side == "R" else 0].center
+            nodes.append(node)
+            centers.append(center)
+            at_rest = float(np.linalg.norm(head.points[node] - center))
+            radius.append(min(EYE_CLEARANCE_MM[ring], at_rest))
+    return np.array(nodes, dtype=np.int32), np.array(centers).reshape(-1, 3), np.array(radius)

@@ -1,0 +1,237 @@
+"""The tissue of one head, assembled: layers, springs, terms, masses, contact (section 5.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..dynamics import (
+    Anchors,
+    Barrier,
+    Plate,
+    Pressure,
+    Pull,
+    Skull,
+    Springs,
+    Tissue,
+    static_forces,
+)
+from ..head import Head
+from .contact import TARSAL_RINGS, Lids, contacts_of, lids_of, ring_and_spoke
+from .layers import Layers, Sheet, sheet_of, stack_layers
+from .parameters import TissueParameters
+from .springs import build_springs, incidence_of, reference_area
+
+NORMAL_ANCHOR_FLOOR = 0.25
+"""Least regional weight of the normal tie: even loose skin does not lift off the skull."""
+FAT_DEPTH_MM = (8.5, 11.5)
+"""Skin depth over which the fat pressure fades in; on a thin forehead it does harm."""
+LIGAMENT_POINTS = ("M4_3", "M4_4", "C4_5")
+"""Cage points on the nasolabial fold, where ligaments tie the skin to the bone."""
+PRESSURE_FREE_RINGS = ("EB", "E0", "E1", "E2", "S1", "M0")
+"""Rings of lids and inner lips: their columns have no bone under them."""
+BARRIER_FLOOR = 0.3
+LEAST_COLUMN_SHARE = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class TissueModel:
+    """One head's tissue as arrays.
+
+    Attributes:
+        parameters: The constants it was assembled from.
+        sheet: Surface polygons, edges and areas.
+        layers: Rest nodes, normals, bone.
+        arrays: What the kernels read.
+        dead_load: Force that balances the pre-tension at rest, shape (3, nodes).
+        scale: Node area over reference area, shape (n,); muscle forces scale with it.
+        held: Epidermis nodes that are moved and not simulated: outer ring and tarsal plates, (n,).
+        lids: Nodes that turn with the lids.
+    """
+
+    parameters: TissueParameters
+    sheet: Sheet
+    layers: Layers
+    arrays: Tissue
+    dead_load: FloatArray
+    scale: FloatArray
+    held: BoolArray
+    lids: Lids
+
+    @property
+    def node_count(self) -> int:
+        """Nodes in one layer."""
+        return len(self.sheet.points)
+
+
+def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool) -> TissueModel:
+    """Build the tissue of `head`.
+
+    Args:
+        head: Any head, built in or read from a file.
+        parameters: Its constants and terms.
+        literal_springs: Eq. 20 as printed.
+    """
+    sheet = sheet_of(head)
+    layers = stack_layers(head, sheet, parameters)
+    scale = sheet.node_area / reference_area(sheet, parameters)
+    springs = build_springs(sheet, layers, parameters, literal=literal_springs)
+    anchors = _anchors(head, parameters, scale)
+    barrier = _barrier(layers, parameters, scale)
+    plate = _plate(sheet, parameters, scale)
+    pressure = _pressure(head, sheet, layers, parameters)
+    node_count = 3 * head.sheet_count
+    stiffness = nodal_stiffness(springs, anchors, barrier, plate, pressure, node_count)
+    held = _held(head)
+    mass = 2.0 * stiffness / parameters.mass_frequency**2
+    inverse_mass = np.where(np.tile(held, 3), 0.0, 1.0 / mass)
+    arrays = Tissue(
+        rest=np.ascontiguousarray(layers.nodes.T),
+        inverse_mass=inverse_mass,
+        damping=parameters.damping,
+        springs=springs,
+        incidence=incidence_of(springs, node_count),
+        anchors=anchors,
+        barrier=barrier,
+        plate=plate,
+        pressure=pressure,
+        contacts=contacts_of(head),
+    )
+    return TissueModel(
+        parameters, sheet, layers, arrays, _dead_load(arrays, layers), scale, held, lids_of(head)
+    )
+
+
+def no_pull(node_count: int) -> Pull:
+    """Return the empty set of moving muscles, for mode "rest"."""
+    return Pull(np.zeros(0, np.int32), np.zeros((0, 16)), np.zeros(0), np.zeros((0, node_count)))
+
+
+def rest_skull(arrays: Tissue, layers: Layers, load: FloatArray) -> Skull:
+    """Return the skull side with the jaw closed and `load` on the nodes, shape (3, nodes)."""
+    n = len(layers.normals)
+    return Skull(
+        targets=np.ascontiguousarray(arrays.rest[:, 2 * n :]),
+        bone=np.ascontiguousarray(layers.bone.T),
+        normals=np.ascontiguousarray(layers.normals.T),
+        load=load,
+    )
+
+
+def nodal_stiffness(
+    springs: Springs,
+    anchors: Anchors,
+    barrier: Barrier,
+    plate: Plate,
+    pressure: Pressure,
+    node_count: int,
+) -> FloatArray:
+    """Return D_i of the mass m_i = 2 D_i / ω², shape (nodes,): all the stiffness at each node.
+
+    Every term counts but the compression guard, which few springs feel at once.
+    """
+    n = node_count // 3
+    total: FloatArray = np.zeros(node_count)
+    np.add.at(total, springs.first, springs.high)
+    np.add.at(total, springs.second, springs.high)
+    total[2 * n :] += 0.5 * np.maximum(anchors.tangential, anchors.normal)
+    if len(barrier.stiffness):
+        total += np.repeat([0.5, 1.0, 0.5], n) * np.tile(barrier.stiffness, 3)
+    if len(plate.values):
+        total[:n] += 0.5 * np.add.reduceat(np.abs(plate.values), plate.start[:-1])
+    if len(pressure.quads):
+        corner = np.repeat(0.5 * pressure.stiffness / pressure.height**2, 4)
+        columns: FloatArray = np.zeros(n)
+        np.add.at(columns, pressure.quads.ravel(), corner)
+        total += np.tile(columns, 3)
+    return total
+
+
+def _dead_load(arrays: Tissue, layers: Layers) -> FloatArray:
+    """Return the force that keeps the pre-tensioned tissue at rest."""
+    force = np.zeros_like(arrays.rest)
+    n = len(layers.normals)
+    skull = rest_skull(arrays, layers, np.zeros_like(arrays.rest))
+    static_forces(
+        arrays.rest, arrays, skull, no_pull(n), np.zeros((3, len(arrays.springs.first))), force
+    )
+    return -force
+
+
+def _anchors(head: Head, p: TissueParameters, scale: FloatArray) -> Anchors:
+    tangential = p.anchor_tangential * head.anchor_weight * scale
+    normal = p.anchor_normal * np.maximum(head.anchor_weight, NORMAL_ANCHOR_FLOOR) * scale
+    for node, name in enumerate(head.names[: head.sheet_count]):
+        if name.partition(".")[0] in LIGAMENT_POINTS:
+            normal[node] *= p.ligament
+    return Anchors(
+        tangential,
+        normal,
+        p.anchor_excess,
+        p.anchor_excess_distance,
+        p.skull_stiffness,
+        p.skull_gap,
+    )
+
+
+def _barrier(layers: Layers, p: TissueParameters, scale: FloatArray) -> Barrier:
+    n = len(layers.normals)
+    if p.layer_order == 0.0:
+        return Barrier(np.zeros(0), np.zeros((2, 0)))
+    stack = layers.nodes.reshape(3, n, 3)
+    gaps = np.stack([((stack[k] - stack[k + 1]) * layers.normals).sum(axis=1) for k in range(2)])
+    return Barrier(p.layer_order * np.maximum(scale, BARRIER_FLOOR), p.layer_gap * gaps)
+
+
+def _plate(sheet: Sheet, p: TissueParameters, scale: FloatArray) -> Plate:
+    if p.plate == 0.0:
+        return Plate(np.zeros(1, np.int32), np.zeros(0, np.int32), np.zeros(0))
+    n = len(sheet.points)
+    laplacian = sp.csr_array(sheet.neighbor_mean - sp.eye_array(n))
+    matrix = sp.csr_array(p.plate * (laplacian.T @ sp.diags_array(scale) @ laplacian))
+    matrix.sum_duplicates()
+    return Plate(matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32), matrix.data)
+
+
+def _pressure(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Pressure:
+    quads = sheet.quads
+    empty = Pressure(np.zeros((0, 4), np.int32), np.zeros(0), np.zeros(0), np.zeros(0))
+    if p.fat_pressure == 0.0 or not len(quads):
+        return empty
+    n = len(sheet.points)
+    middle = layers.nodes.reshape(3, n, 3).mean(axis=0)
+    volume = column_volumes(middle, layers.bone, quads)
+    area = sheet.polygon_area[sheet.is_quad]
+    quad_depth = layers.depth[quads].mean(axis=1)
+    fat = _smoothstep(*FAT_DEPTH_MM, quad_depth)
+    held = np.array([ring_and_spoke(name)[0] in PRESSURE_FREE_RINGS for name in head.names[:n]])
+    sound = (volume > LEAST_COLUMN_SHARE * area * quad_depth) & ~held[quads].any(axis=1)
+    modulus = p.fat_pressure * fat * area / p.reference_length**2
+    height = np.maximum(volume / area, 1.0)
+    keep = sound & (modulus > 0.0)
+    return Pressure(
+        quads[keep].astype(np.int32), (modulus * height**2)[keep], volume[keep], height[keep]
+    )
+
+
+def column_volumes(middle: FloatArray, bone: FloatArray, quads: IntArray) -> FloatArray:
+    """Return the signed volume between mid-surface and bone of each quad, mm³, shape (q,)."""
+    p = middle[quads[:, 2]] - middle[quads[:, 0]]
+    r = middle[quads[:, 3]] - middle[quads[:, 1]]
+    d = middle[quads].mean(axis=1) - bone[quads].mean(axis=1)
+    return np.asarray(0.5 * np.einsum("qc,qc->q", np.cross(p, r), d))
+
+
+def _held(head: Head) -> BoolArray:
+    tarsal = np.array(
+        [ring_and_spoke(name)[0] in TARSAL_RINGS for name in head.names[: head.sheet_count]]
+    )
+    return head.fixed | tarsal if head.eyes else head.fixed.copy()
+
+
+def _smoothstep(low: float, high: float, x: FloatArray) -> FloatArray:
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return np.asarray(t * t * (3.0 - 2.0 * t))

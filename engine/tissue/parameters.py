@@ -1,0 +1,218 @@
+"""Every constant of the tissue, with its source or its reason, and the terms that can be switched.
+
+Stiffness is in the paper's units (Table 2), where one unit stands for 17.3 g/s²; only the ratio of
+stiffness to mass, and of force to stiffness, shows in the motion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+
+from ..errors import InvalidValue, UnknownName
+
+LAYERS = ("epidermis", "dermis", "hypodermis")
+
+
+@dataclass(frozen=True)
+class Layered:
+    """One value for each tissue layer, from the surface down."""
+
+    epidermis: float
+    dermis: float
+    hypodermis: float
+
+    def __getitem__(self, layer: int) -> float:
+        return (self.epidermis, self.dermis, self.hypodermis)[layer]
+
+
+@dataclass(frozen=True)
+class TissueParameters:
+    """Constants of one face's tissue. The defaults are the `standard` rig's.
+
+    The paper's own (section 5, Table 2):
+        stiffness_low, stiffness_high: k_L and k_H of each layer's springs; springs between two
+            layers take the lower layer's.
+    Left open by the paper:
+        strain_threshold: ε_c. 0.15 keeps the knee just above the rest strain of the pre-tension;
+            0.20 brought a lateral asymmetry of 1 mm back in AU1 and AU4.
+        compression_guard, guard_strain: third spring phase, k_g k_H beyond ε_k of compression;
+            without it compressed layers fold. The best of eleven pairs tried.
+        reference_length: L0, mm: springs scale by element size against it, so that a finer mesh
+            of the same face is as stiff.
+        dermis_depth: Epidermis to dermis, mm.
+        hypodermis_share, hypodermis_least, hypodermis_most: Dermis to hypodermis as a share of
+            the depth to bone, and its limits, mm. The paper gives no depths.
+        anchor_tangential, anchor_normal: Tie of hypodermis to skull, along and across it.
+        anchor_excess, anchor_excess_distance: The ties stiffen beyond this distance, mm.
+        skull_stiffness, skull_gap: Wall of the skull, as a share of the normal tie, and the free
+            way to it, mm.
+        damping: c, 1/s, in C = c M; settles a step in about 0.2 s.
+        mass_frequency: ω, rad/s: masses are 2 D / ω² with D the stiffness at a node, so that no
+            mode is faster. Equilibria do not depend on it.
+        activation_lag, lid_lag: First-order lags of muscles and jaw, and of lids, s; a blink must
+            close in 0.1 s.
+    Terms beyond the paper, each off at zero or False (all are off in the `paper` rig):
+        pretension: Share by which in-layer springs are shorter than at rest. Living skin is under
+            tension; without it compressed skin buckles. The rest residual is carried as a load.
+        layer_order: Stiffness of the barrier that keeps the order of the layers, per mm.
+        layer_gap: Share of the rest gap which that barrier keeps.
+        plate: Bending stiffness of the epidermis.
+        force_smoothing: Passes that smooth the muscles' force over the skin.
+        fat_pressure: Pressure modulus of the fat columns of cheek and lips.
+        ligament: Factor on the normal tie along the nasolabial fold.
+        cross_diagonals: Springs along both diagonals of a quad, not only along edges.
+        force_quadrature: Muscle weights integrated over each quad, not sampled at nodes.
+        regional_depth: Skin depth by region; off: `uniform_depth` everywhere.
+        uniform_depth: Depth to bone where it is not regional, mm (1.5 + 3 + 3).
+    """
+
+    stiffness_low: Layered = Layered(50.0, 20.0, 30.0)
+    stiffness_high: Layered = Layered(100.0, 40.0, 80.0)
+    strain_threshold: float = 0.15
+    compression_guard: float = 1.0
+    guard_strain: float = 0.10
+    reference_length: float = 8.0
+    dermis_depth: float = 1.5
+    hypodermis_share: float = 0.35
+    hypodermis_least: float = 1.0
+    hypodermis_most: float = 4.5
+    anchor_tangential: float = 30.0
+    anchor_normal: float = 150.0
+    anchor_excess: float = 2.0
+    anchor_excess_distance: float = 5.0
+    skull_stiffness: float = 5.0
+    skull_gap: float = 1.5
+    damping: float = 40.0
+    mass_frequency: float = 600.0
+    activation_lag: float = 0.040
+    lid_lag: float = 0.010
+    pretension: float = 0.12
+    layer_order: float = 150.0
+    layer_gap: float = 0.6
+    plate: float = 20.0
+    force_smoothing: int = 2
+    fat_pressure: float = 120.0
+    ligament: float = 3.0
+    cross_diagonals: bool = True
+    force_quadrature: bool = True
+    regional_depth: bool = True
+    uniform_depth: float = 7.5
+    region_stiffness: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, (low, high) in LIMITS.items():
+            _check(name, getattr(self, name), low, high)
+        for name in ("stiffness_low", "stiffness_high"):
+            for layer in LAYERS:
+                _check(f"{name}.{layer}", getattr(getattr(self, name), layer), 1.0, 2000.0)
+        for layer in LAYERS:
+            if getattr(self.stiffness_high, layer) < getattr(self.stiffness_low, layer):
+                raise InvalidValue(
+                    f"stiffness_high.{layer} is below stiffness_low.{layer}; "
+                    "skin stiffens past the strain threshold"
+                )
+        for region, factor in self.region_stiffness.items():
+            _check(f"region_stiffness.{region}", factor, 0.1, 10.0)
+
+    def edited(self, changes: Mapping[str, object]) -> TissueParameters:
+        """Return these parameters with `changes`, by field name; layered fields take a mapping.
+
+        Raises:
+            UnknownName: For a field or layer that does not exist.
+            InvalidValue: For a value outside its limits.
+        """
+        known = {f.name for f in fields(self)}
+        edits: dict[str, object] = {}
+        for name, value in changes.items():
+            if name not in known:
+                raise UnknownName("tissue parameter", name, known)
+            edits[name] = self._edit(name, value)
+        return replace(self, **edits)  # type: ignore[arg-type]
+
+    def _edit(self, name: str, value: object) -> object:
+        old = getattr(self, name)
+        if isinstance(old, Layered):
+            return _edited_layers(name, old, value)
+        if name == "region_stiffness":
+            if not isinstance(value, Mapping):
+                raise InvalidValue(f"{name} is {value!r}; expected a mapping of region to factor")
+            return {**old, **{str(k): _number(name, v) for k, v in value.items()}}
+        if isinstance(old, bool):
+            if not isinstance(value, bool):
+                raise InvalidValue(f"{name} is {value!r}; expected true or false")
+            return value
+        number = _number(name, value)
+        return round(number) if isinstance(old, int) else number
+
+    def to_json(self) -> dict[str, object]:
+        """Return the parameters as plain data."""
+        return asdict(self)
+
+
+LIMITS: Mapping[str, tuple[float, float]] = {
+    "strain_threshold": (0.0, 1.0),
+    "compression_guard": (0.0, 10.0),
+    "guard_strain": (0.0, 1.0),
+    "reference_length": (1.0, 50.0),
+    "dermis_depth": (0.2, 5.0),
+    "hypodermis_share": (0.05, 0.8),
+    "hypodermis_least": (0.2, 5.0),
+    "hypodermis_most": (0.5, 15.0),
+    "anchor_tangential": (0.1, 1000.0),
+    "anchor_normal": (0.1, 3000.0),
+    "anchor_excess": (0.0, 50.0),
+    "anchor_excess_distance": (0.1, 50.0),
+    "skull_stiffness": (0.0, 50.0),
+    "skull_gap": (0.0, 20.0),
+    "damping": (5.0, 200.0),
+    "mass_frequency": (100.0, 1500.0),
+    "activation_lag": (0.0, 2.0),
+    "lid_lag": (0.0, 2.0),
+    "pretension": (0.0, 0.4),
+    "layer_order": (0.0, 2000.0),
+    "layer_gap": (0.0, 1.0),
+    "plate": (0.0, 500.0),
+    "force_smoothing": (0, 20),
+    "fat_pressure": (0.0, 1000.0),
+    "ligament": (0.0, 20.0),
+    "uniform_depth": (2.0, 40.0),
+}
+"""Allowed range of each single number; beyond it a face is not stable or no longer a face."""
+
+
+def _edited_layers(name: str, old: Layered, value: object) -> Layered:
+    if not isinstance(value, Mapping):
+        raise InvalidValue(f"{name} is {value!r}; expected a mapping such as {{'dermis': 20}}")
+    for layer in value:
+        if layer not in LAYERS:
+            raise UnknownName("tissue layer", str(layer), LAYERS)
+    return replace(old, **{layer: _number(f"{name}.{layer}", v) for layer, v in value.items()})
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InvalidValue(f"{name} is {value!r}; expected a number")
+    return float(value)
+
+
+def _check(name: str, value: float, low: float, high: float) -> None:
+    if not (math.isfinite(value) and low <= value <= high):
+        raise InvalidValue(f"{name} is {value!r}; it must lie between {low:g} and {high:g}")
+
+
+PAPER_PARAMETERS = TissueParameters(
+    compression_guard=0.0,
+    reference_length=7.7,
+    pretension=0.0,
+    layer_order=0.0,
+    plate=0.0,
+    force_smoothing=0,
+    fat_pressure=0.0,
+    ligament=1.0,
+    cross_diagonals=False,
+    force_quadrature=False,
+    regional_depth=False,
+)
+"""The paper's literal tissue: every term beyond it is off."""

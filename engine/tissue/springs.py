@@ -1,0 +1,143 @@
+"""Structural and shear springs over the three layers, scaled by element size (section 5.2)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..dynamics import Incidence, Springs
+from .layers import Layers, Sheet
+from .parameters import TissueParameters
+
+EDGE_SCALE_LIMITS = (0.2, 4.0)
+DIAGONAL_SCALE_LIMITS = (0.1, 2.0)
+
+
+def reference_area(sheet: Sheet, parameters: TissueParameters) -> float:
+    """Return A0, mm²: one node's area in a regular lattice of edges L0.
+
+    A square lattice's for a sheet of quads, L0²; an equilateral one's, √3/2 L0², for triangles.
+    """
+    return _lattice_factor(sheet) * parameters.reference_length**2
+
+
+def build_springs(
+    sheet: Sheet, layers: Layers, parameters: TissueParameters, *, literal: bool
+) -> Springs:
+    """Join the nodes: along the layers, straight down, and across.
+
+    The paper says that stiffness is scaled by element size and gives no formula. Here an in-layer
+    spring has the stiffness of the strip of skin beside it, area over length squared, which makes
+    the sheet as stiff on any mesh; springs between layers and shear springs carry their area.
+
+    Args:
+        sheet: The surface.
+        layers: Node positions.
+        parameters: Stiffnesses and switches.
+        literal: Eq. 20 as printed in place of the continuous biphasic law.
+    """
+    p, n = parameters, len(sheet.points)
+    parts: list[tuple[IntArray, IntArray, FloatArray, FloatArray, float]] = []
+
+    def add(first: IntArray, second: IntArray, layer: int, scale: FloatArray, short: float) -> None:
+        low, high = p.stiffness_low[layer], p.stiffness_high[layer]
+        parts.append((first, second, low * scale, high * scale, short))
+
+    edges, region = sheet.edges, _region_scale(sheet, p)
+    edge_scale = _edge_scale(sheet) * region[edges].mean(axis=1)
+    diagonals, diagonal_scale = _diagonals(sheet)
+    diagonal_scale = (
+        diagonal_scale * region[diagonals].mean(axis=1) if len(diagonals) else diagonal_scale
+    )
+    for layer in range(3):
+        offset = layer * n
+        add(edges[:, 0] + offset, edges[:, 1] + offset, layer, edge_scale, p.pretension)
+        if p.cross_diagonals and len(diagonals):
+            add(
+                diagonals[:, 0] + offset,
+                diagonals[:, 1] + offset,
+                layer,
+                diagonal_scale,
+                p.pretension,
+            )
+    area0 = reference_area(sheet, p)
+    down = sheet.node_area / area0
+    # The two shear springs of an edge share its skin on a square lattice; on triangles each
+    # carries it whole, as the paper's element draws them.
+    shear = sheet.edge_area / (area0 * (2.0 if _lattice_factor(sheet) == 1.0 else 1.0))
+    node = np.arange(n)
+    for layer in range(2):
+        upper, lower = layer * n, (layer + 1) * n
+        add(node + upper, node + lower, layer + 1, down, 0.0)
+        add(edges[:, 0] + upper, edges[:, 1] + lower, layer + 1, shear, 0.0)
+        add(edges[:, 1] + upper, edges[:, 0] + lower, layer + 1, shear, 0.0)
+    first = np.concatenate([part[0] for part in parts])
+    second = np.concatenate([part[1] for part in parts])
+    length = np.linalg.norm(layers.nodes[first] - layers.nodes[second], axis=1)
+    short = np.concatenate([np.full(len(part[0]), part[4]) for part in parts])
+    high = np.concatenate([part[3] for part in parts])
+    return Springs(
+        first=first.astype(np.int32),
+        second=second.astype(np.int32),
+        rest=length * (1.0 - short),
+        low=np.concatenate([part[2] for part in parts]),
+        high=high,
+        guard=p.compression_guard * high,
+        threshold=p.strain_threshold,
+        guard_strain=p.guard_strain,
+        literal=literal,
+    )
+
+
+def incidence_of(springs: Springs, node_count: int) -> Incidence:
+    """Return each node's springs, in spring order: +1 where the node is the spring's first end."""
+    count = len(springs.first)
+    ends = np.concatenate([springs.first, springs.second])
+    signs = np.concatenate([np.ones(count), -np.ones(count)])
+    index = np.concatenate([np.arange(count), np.arange(count)])
+    order = np.argsort(ends, kind="stable")
+    start = np.searchsorted(ends[order], np.arange(node_count + 1))
+    return Incidence(start.astype(np.int32), index[order].astype(np.int32), signs[order])
+
+
+def _lattice_factor(sheet: Sheet) -> float:
+    return 1.0 if sheet.is_quad.mean() > 0.5 else math.sqrt(3.0) / 2.0
+
+
+def _edge_scale(sheet: Sheet) -> FloatArray:
+    a, b = sheet.points[sheet.edges[:, 0]], sheet.points[sheet.edges[:, 1]]
+    squared = ((a - b) ** 2).sum(axis=1)
+    # A square lattice has 2 L² of polygons at an edge, an equilateral one √3/2 L².
+    strip = 2.0 if _lattice_factor(sheet) == 1.0 else math.sqrt(3.0) / 2.0
+    return np.asarray(np.clip(sheet.edge_area / (strip * squared), *EDGE_SCALE_LIMITS))
+
+
+def _diagonals(sheet: Sheet) -> tuple[IntArray, FloatArray]:
+    quads, area = sheet.quads, sheet.polygon_area[sheet.is_quad]
+    # Interleaved, so that a quad's two diagonals are neighbours in the list.
+    pairs = np.stack([quads[:, [0, 2]], quads[:, [1, 3]]], axis=1).reshape(-1, 2)
+    squared = ((sheet.points[pairs[:, 0]] - sheet.points[pairs[:, 1]]) ** 2).sum(axis=1)
+    # Area over squared diagonal is a half on squares: with it a square lattice is isotropic.
+    return pairs, np.clip(np.repeat(area, 2) / squared, *DIAGONAL_SCALE_LIMITS)
+
+
+def _region_scale(sheet: Sheet, parameters: TissueParameters) -> FloatArray:
+    scale = np.ones(len(sheet.points))
+    for region, factor in parameters.region_stiffness.items():
+        share = sheet_region_share(sheet, region)
+        scale *= 1.0 + (factor - 1.0) * share
+    return scale
+
+
+def sheet_region_share(sheet: Sheet, region: str) -> FloatArray:
+    """Return each node's share of polygons whose label is or holds `region`, shape (n,)."""
+    inside = np.array([region == label or region in label for label in sheet.polygon_regions])
+    share, total = np.zeros(len(sheet.points)), np.zeros(len(sheet.points))
+    for k in range(4):
+        has = sheet.polygons[:, k] >= 0
+        corner = sheet.polygons[has, k]
+        np.add.at(share, corner, inside[has].astype(float))
+        np.add.at(total, corner, 1.0)
+    return np.asarray(share / np.maximum(total, 1.0))
