@@ -12,8 +12,9 @@ import numpy as np
 from .arrays import Float32Array
 from .cache import Arrays, cached_arrays, content_key
 from .errors import Diverged, EngineError, InvalidValue
+from .frame import Frame, Pose
 from .rig import Model, Rig
-from .simulator import Frame, Pose, Simulator
+from .simulator import Simulator
 from .timeline import TICKS_PER_SECOND, Keyframe, Timeline, ticks
 
 Progress = Callable[[float], None]
@@ -127,12 +128,11 @@ class _Player:
         while self._tick < tick:
             while self._coming and ticks(self._coming[0].time) <= self._tick:
                 self._simulator.apply(FACE, self._coming.pop(0))
-            self._simulator.step()
+            stepped = self._simulator.step()
             self._tick += 1
-        frame = self._simulator.frame(FACE)
-        if frame.diverged:
-            raise Diverged(f"the face diverged before {tick / TICKS_PER_SECOND:.2f} s")
-        return frame
+            if FACE in stepped and stepped[FACE].diverged:
+                raise Diverged(f"the face diverged at {self._tick / TICKS_PER_SECOND:.2f} s")
+        return self._simulator.frame(FACE)
 
 
 def settled(
@@ -183,7 +183,7 @@ def _to_arrays(frames: Sequence[Frame]) -> Arrays:
         "flags": np.array([(frame.asleep, frame.diverged) for frame in frames]),
         "displacements": np.stack([frame.displacements for frame in frames]),
         "activations": np.stack([frame.activations for frame in frames]),
-        "poses": np.array([np.concatenate(np.atleast_1d(*astuple(f.pose))) for f in frames]),
+        "poses": np.array([np.hstack(astuple(frame.pose)) for frame in frames]),
     }
 
 
@@ -205,8 +205,9 @@ def _from_arrays(arrays: Arrays) -> list[Frame]:
 
 
 def _pose(numbers: list[float]) -> Pose:
-    pitch, yaw, thrust, *rest = numbers
-    return Pose(pitch, yaw, thrust, tuple(rest[:2]), tuple(rest[2:4]), tuple(rest[4:]))
+    pitch, yaw, thrust, *gaze, turn, nod, tilt = numbers
+    left, right = (gaze[0], gaze[1]), (gaze[2], gaze[3])
+    return Pose(pitch, yaw, thrust, left, right, (turn, nod, tilt))
 
 
 @lru_cache(maxsize=1)

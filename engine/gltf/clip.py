@@ -5,20 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
+from ..clip import Clip
 from .basis import SHARE_DROPPED, Motion, MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder, metres
 from .drawn import DrawnFace
 from .pose import RigidMotion, motions
 from .scene import Pivot, add_pivots, add_rigid_parts, file_extras
 from .skin import add_skin, turn_of
-
-if TYPE_CHECKING:
-    from ..clip import Clip
 
 ANIMATION_NAME = "performance"
 NORMAL_FRAMES = 150
@@ -50,8 +47,8 @@ def clip_to_glb(clip: Clip, *, tolerance: float = 0.05) -> bytes:
         face,
         pivots["head"],
         names=[f"shape_{number:02d}" for number in range(len(basis.shapes))],
-        moves=basis.shapes,
-        turns=_turns(clip, face, basis),
+        moves=list(basis.shapes),
+        turns=list(_turns(clip, face, basis)),
         smallest=SHARE_DROPPED * tolerance,
     )
     add_rigid_parts(builder, rig.head, pivots)

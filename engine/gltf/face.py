@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..arrays import FloatArray
+from ..frame import Frame
+from ..rig import Rig
 from .builder import Array, GlbBuilder, metres
 from .drawn import DrawnFace, roots_of, turn_with, unit_normals
 from .pose import RigidMotion, motions
 from .scene import file_extras, part_attributes, rigid_parts, skin_attributes
-
-if TYPE_CHECKING:
-    from ..rig import Rig
-    from ..simulator import Frame
 
 
 def face_to_glb(rig: Rig, frame: Frame) -> bytes:

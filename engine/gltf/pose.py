@@ -8,18 +8,15 @@ left-handed turns about x and z. They compose as yaw, pitch, roll from the outsi
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..arrays import FloatArray
+from ..frame import Pose
 from ..head.head import Head
 from ..jaw import JawHinge
 from .scene import EYE_NODES, NECK_PIVOT
-
-if TYPE_CHECKING:
-    from ..timeline import Pose
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..clip import settled_units
+from ..frame import Frame
 from ..head.head import Part
+from ..rig import Rig
 from .builder import GlbBuilder, metres
 from .drawn import DrawnFace
 from .pose import motions
@@ -20,10 +22,6 @@ from .scene import (
     part_node_name,
 )
 from .skin import Target, add_skin, add_targets, turn_of
-
-if TYPE_CHECKING:
-    from ..rig import Rig
-    from ..simulator import Frame
 
 SMALLEST_MOVE = 2e-3
 """Vertices that an action unit moves by less are taken as still: a tenth of the stream's grid, mm.
@@ -44,16 +42,7 @@ def rig_to_glb(rig: Rig, *, progress: Callable[[float], None] | None = None) -> 
         progress: Told the share of the work done, 0 to 1.
     """
     names = tuple(rig.action_units)
-    return targets_to_glb(rig, names, _settled_units(rig, progress))
-
-
-def _settled_units(rig: Rig, progress: Callable[[float], None] | None) -> Sequence[Frame]:
-    # Not at the top: the simulator is heavy to import, and only this file needs it.
-    from ..clip import settled
-    from ..timeline import Keyframe
-
-    keyframes = [Keyframe(action_units={name: 1.0}, fade=0.15) for name in rig.action_units]
-    return settled(rig, keyframes, progress=progress)
+    return targets_to_glb(rig, names, settled_units(rig, progress=progress))
 
 
 def targets_to_glb(rig: Rig, names: Sequence[str], frames: Sequence[Frame]) -> bytes:

@@ -12,8 +12,8 @@ from .builder import GlbBuilder, metres
 from .drawn import DrawnFace
 from .scene import Pivot, part_attributes, skin_attributes
 
-SMALLEST_TURN = 2e-3
-"""Normals that change by less are taken as still: a tenth of a degree."""
+SMALLEST_TURN = 5e-3
+"""Normals that change by less are taken as still: a third of a degree."""
 
 Target = Mapping[str, npt.NDArray[np.float32]]
 """Change of "POSITION" [m] and "NORMAL", shape (n, 3)."""

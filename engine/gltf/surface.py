@@ -6,11 +6,10 @@ strands' roots are buffers, named in the nodes' extras by their accessor's index
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..head.head import BULGE_HEIGHT, BULGE_POWER, BULGE_RADIUS, LID_GAP, Head
+from ..rig import Rig
 from .builder import GlbBuilder, compact_indices, metres
 from .drawn import DrawnFace, SkinNormals, roots_of
 from .scene import (
@@ -21,9 +20,6 @@ from .scene import (
     part_attributes,
     skin_attributes,
 )
-
-if TYPE_CHECKING:
-    from ..rig import Rig
 
 STREAM_RATE = 60
 """Frames a second of the stream."""
