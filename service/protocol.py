@@ -107,7 +107,7 @@ def _to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
 
 def encode_frame(frame: SurfaceFrame) -> bytes:
     """Return the bytes of `frame`, as laid out above."""
-    moved = frame.steps.any(axis=1)
+    moved = np.asarray(frame.steps.any(axis=1))
     header = _HEADER.pack(
         KIND_SURFACE,
         FRAME_VERSION,

@@ -30,18 +30,20 @@ class Settings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix="RISORIUS_", extra="ignore", frozen=True)
 
-    host: str = Field("127.0.0.1", description="Address to listen on.")
-    port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
+    host: str = Field(default="127.0.0.1", description="Address to listen on.")
+    port: int = Field(
+        default=8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one."
+    )
     allowed_hosts: Names = Field(
-        (), description="Host names answered besides localhost and `host`, comma separated."
+        default=(), description="Host names answered besides localhost and `host`, comma separated."
     )
     allowed_origins: Names = Field(
-        (),
+        default=(),
         description="Origins of other web pages that may drive faces, as https://name:port, "
         "comma separated.",
     )
     api_keys: Names = Field(
-        (), description="Keys, one of which every API call must carry once any is set."
+        default=(), description="Keys, one of which every API call must carry once any is set."
     )
     data_dir: Path = Field(
         default_factory=_data_folder, description="Folder of the database and of rendered clips."
@@ -51,34 +53,39 @@ class Settings(BaseSettings):
         description="Folder of files that can be made again: compiled rigs and their GLB files.",
     )
     database_url: str = Field(
-        "", description="SQLAlchemy URL of the database; empty is a SQLite file in the data folder."
+        default="",
+        description="SQLAlchemy URL of the database; empty is a SQLite file in the data folder.",
     )
     viewer_dir: Path = Field(
-        Path(__file__).parent / "viewer", description="Folder of the built viewer."
+        default=Path(__file__).parent / "viewer", description="Folder of the built viewer."
     )
     max_body_bytes: int = Field(
-        4_000_000, ge=1024, description="Largest request body accepted, in bytes."
+        default=4_000_000, ge=1024, description="Largest request body accepted, in bytes."
     )
     max_message_bytes: int = Field(
-        65_536, ge=1024, description="Largest WebSocket message accepted, in bytes."
+        default=65_536, ge=1024, description="Largest WebSocket message accepted, in bytes."
     )
-    max_sessions: int = Field(256, ge=1, description="Most sessions open at once.")
-    max_viewers: int = Field(64, ge=1, description="Most sockets open on one session.")
-    max_rigs: int = Field(1000, ge=1, description="Most derived rigs kept.")
-    max_clips: int = Field(1000, ge=1, description="Most clips kept, whatever their state.")
-    max_queued_clips: int = Field(32, ge=1, description="Most clips waiting or being rendered.")
+    max_sessions: int = Field(default=256, ge=1, description="Most sessions open at once.")
+    max_viewers: int = Field(default=64, ge=1, description="Most sockets open on one session.")
+    max_rigs: int = Field(default=1000, ge=1, description="Most derived rigs kept.")
+    max_clips: int = Field(default=1000, ge=1, description="Most clips kept, whatever their state.")
+    max_queued_clips: int = Field(
+        default=32, ge=1, description="Most clips waiting or being rendered."
+    )
     max_clip_seconds: float = Field(
-        120.0, gt=0, allow_inf_nan=False, description="Longest clip accepted, in seconds."
+        default=120.0, gt=0, allow_inf_nan=False, description="Longest clip accepted, in seconds."
     )
-    max_keyframes: int = Field(10_000, ge=1, description="Most keyframes accepted in one clip.")
+    max_keyframes: int = Field(
+        default=10_000, ge=1, description="Most keyframes accepted in one clip."
+    )
     session_idle_seconds: float = Field(
-        86_400.0,
+        default=86_400.0,
         gt=0,
         allow_inf_nan=False,
         description="A session without viewer or command is closed after this time.",
     )
     requests_per_second: float = Field(
-        500.0,
+        default=500.0,
         gt=0,
         allow_inf_nan=False,
         description="Requests and socket messages a second accepted from one client.",
@@ -88,7 +95,7 @@ class Settings(BaseSettings):
         ge=1,
         description="Threads that live faces are spread over.",
     )
-    render_threads: int = Field(1, ge=1, description="Clips rendered at the same time.")
+    render_threads: int = Field(default=1, ge=1, description="Clips rendered at the same time.")
 
     @field_validator("allowed_hosts", "allowed_origins", "api_keys", mode="before")
     @classmethod

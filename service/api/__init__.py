@@ -1,0 +1,14 @@
+"""The REST routes; each one is parse, call, answer."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from . import clips, rigs, sessions, system
+from .answers import ERRORS
+
+router = APIRouter(responses=ERRORS)
+for module in (system, rigs, sessions, clips):
+    router.include_router(module.router)
+
+__all__ = ["router"]

@@ -1,0 +1,67 @@
+"""What answers look like: documented errors, JSON bodies, GLB files with their tag."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from fastapi import Request
+from pydantic import BaseModel
+from starlette.responses import Response
+
+GLB = "model/gltf-binary"
+
+
+class ErrorBody(BaseModel):
+    """The one shape of every error."""
+
+    error: str
+    message: str
+    known: list[str] | None = None
+
+
+_MEANINGS = {
+    400: "The body is not JSON.",
+    401: "Keys are set, and none was sent.",
+    403: "Pages of this origin may not use the service.",
+    404: "There is no such thing.",
+    409: "The thing is not in a state for this.",
+    413: "The body is too large.",
+    421: "The service does not answer for this host.",
+    422: "A name or a value cannot be used.",
+    429: "Too many requests.",
+    503: "A limit is reached, or the service warms up.",
+}
+ERRORS: dict[int | str, dict[str, Any]] = {
+    status: {"model": ErrorBody, "description": meaning} for status, meaning in _MEANINGS.items()
+}
+GLB_CONTENT: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "A GLB file.",
+        "content": {GLB: {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
+TAGGED: dict[int | str, dict[str, Any]] = {
+    **GLB_CONTENT,
+    304: {"description": "The client has it already."},
+}
+
+
+class GlbResponse(Response):
+    """A GLB file."""
+
+    media_type: ClassVar[str] = GLB  # type: ignore[misc]
+
+
+def tagged_glb(request: Request, data: bytes, tag: str) -> Response:
+    """Return a GLB that depends on its tag alone, or 304 if the client has it."""
+    headers = {"ETag": f'"{tag}"', "Cache-Control": "no-cache"}
+    if client_has(request, tag):
+        return Response(status_code=304, headers=headers)
+    return GlbResponse(data, headers=headers)
+
+
+def client_has(request: Request, tag: str) -> bool:
+    """Return whether the client named `tag` as one it has."""
+    offered = request.headers.get("if-none-match", "")
+    tags = {part.strip().removeprefix("W/").strip('"') for part in offered.split(",")}
+    return tag in tags or offered.strip() == "*"

@@ -1,0 +1,82 @@
+"""Rigs: what faces are made of, as JSON and as GLB."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+from engine import EngineError, Keyframe, Rig, face_to_glb, format_facs, parse_facs, settled
+
+from ..bodies import NewRig
+from ..components import Parts
+from ..errors import Unprocessable, refused_by_engine
+from .answers import TAGGED, GlbResponse, client_has, tagged_glb
+
+router = APIRouter(prefix="/api/rigs", tags=["rigs"])
+
+
+@router.get("")
+async def list_rigs(parts: Parts) -> dict[str, Any]:
+    """List the rigs, the built-in ones first."""
+    return {"rigs": await parts.rigs.lines()}
+
+
+@router.post("", status_code=201, responses={200: {"description": "That content exists."}})
+async def derive_rig(body: NewRig, parts: Parts, response: Response) -> dict[str, Any]:
+    """Derive a rig: the same changes of the same rig always give the same id."""
+    if body.recipe:
+        raise Unprocessable("not_available", "head recipes are not available yet")
+    base = await parts.rigs.get(body.base)
+    changes = body.model_dump(exclude={"base", "recipe"}, exclude_none=True)
+    rig, created = await parts.rigs.derive(base, changes)
+    response.status_code = 201 if created else 200
+    response.headers["Location"] = f"/api/rigs/{rig.id}"
+    return rig.describe()
+
+
+@router.get("/{rig}.glb", responses=TAGGED, response_class=GlbResponse)
+async def rig_glb(
+    rig: str, parts: Parts, request: Request, names: Annotated[str, Query(max_length=16)] = "facs"
+) -> Response:
+    """Return the rest head with its action units as morph targets."""
+    if names != "facs":
+        raise Unprocessable("not_available", "names is 'facs'; 'arkit' is not available yet")
+    found = await parts.rigs.get(rig)
+    data = b"" if client_has(request, found.id) else await parts.rigs.glb(found)
+    return tagged_glb(request, data, found.id)
+
+
+@router.get("/{rig}")
+async def one_rig(rig: str, parts: Parts) -> dict[str, Any]:
+    """Return a rig's muscles, action units, emotions, tissue constants and mesh sizes."""
+    return (await parts.rigs.get(rig)).describe()
+
+
+@router.get("/{rig}/surface.glb", responses=TAGGED, response_class=GlbResponse)
+async def surface_glb(rig: str, parts: Parts, request: Request) -> Response:
+    """Return the tissue surface in stream order, and the sparse map to the drawn surface."""
+    found = await parts.rigs.get(rig)
+    data = b"" if client_has(request, found.id) else await parts.rigs.surface(found)
+    return tagged_glb(request, data, found.id)
+
+
+@router.get("/{rig}/expressions/{facs}.glb", responses=TAGGED, response_class=GlbResponse)
+async def expression_glb(rig: str, facs: str, parts: Parts, request: Request) -> Response:
+    """Return an expression such as `1C+2C+L12D`, settled and baked."""
+    found = await parts.rigs.get(rig)
+    try:
+        terms = parse_facs(facs)
+        keyframe = Keyframe(action_units={term.key: term.intensity for term in terms}, fade=0.15)
+        found.check(keyframe)
+    except EngineError as error:
+        raise refused_by_engine(error) from error
+    tag = f"{found.id}-{format_facs(sorted(terms, key=lambda term: term.key))}"
+    if client_has(request, tag):
+        return tagged_glb(request, b"", tag)
+    data = await parts.rigs.file(tag, lambda: _expression(found, keyframe))
+    return tagged_glb(request, data, tag)
+
+
+def _expression(rig: Rig, keyframe: Keyframe) -> bytes:
+    return face_to_glb(rig, settled(rig, [keyframe])[0])

@@ -1,0 +1,118 @@
+"""Sessions: live faces, and the commands that move them."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from fastapi import APIRouter, Response
+
+from engine import UnknownName, face_to_glb
+
+from ..bodies import Changes, Controls, EmotionCommand, NewSession
+from ..commands import controls_keyframe, model_of, play_emotion
+from ..components import Components, Parts
+from ..errors import refused_by_engine
+from ..sessions import Session
+from .answers import GLB_CONTENT, GlbResponse
+
+router = APIRouter(prefix="/api/sessions", tags=["sessions"])
+
+
+@router.post("", status_code=201)
+async def open_session(parts: Parts, response: Response, body: NewSession) -> dict[str, Any]:
+    """Open a session: a face at rest, until somebody commands it."""
+    rig = await parts.rigs.get(body.rig)
+    session = await parts.sessions.open(rig, model_of(body.model, rig))
+    response.headers["Location"] = f"/api/sessions/{session.id}"
+    return session.describe()
+
+
+@router.get("")
+async def list_sessions(parts: Parts) -> dict[str, Any]:
+    """List the sessions, oldest first."""
+    return {"sessions": parts.sessions.lines()}
+
+
+@router.get("/{session_id}.glb", responses=GLB_CONTENT, response_class=GlbResponse)
+async def session_glb(session_id: str, parts: Parts) -> Response:
+    """Return the face as it stands: plain positions, deformation baked."""
+    session = await parts.sessions.get(session_id)
+    view = await parts.sessions.view(session)
+    data = await asyncio.to_thread(face_to_glb, session.rig, view.frame)
+    return GlbResponse(data, headers={"Cache-Control": "no-store"})
+
+
+@router.get("/{session_id}")
+async def one_session(session_id: str, parts: Parts) -> dict[str, Any]:
+    """Return a session: what its layers hold and what they make together."""
+    session = await parts.sessions.get(session_id)
+    view = await parts.sessions.view(session)
+    return {**session.describe(), "tick": view.frame.tick, **view.report}
+
+
+@router.delete("/{session_id}", status_code=204)
+async def close_session(session_id: str, parts: Parts) -> None:
+    """Close a session for good."""
+    await parts.sessions.close(session_id)
+
+
+@router.put("/{session_id}/controls")
+async def put_controls(session_id: str, body: Controls, parts: Parts) -> dict[str, Any]:
+    """Replace everything that the layer holds."""
+    return await _control(session_id, body, parts, replace=True)
+
+
+@router.patch("/{session_id}/controls")
+async def patch_controls(session_id: str, body: Controls, parts: Parts) -> dict[str, Any]:
+    """Move only what is named."""
+    return await _control(session_id, body, parts, replace=False)
+
+
+@router.post("/{session_id}/emotions")
+async def play(session_id: str, body: EmotionCommand, parts: Parts) -> dict[str, Any]:
+    """Play an emotion, or a blend of scored ones."""
+    session = await parts.sessions.get(session_id)
+    played = play_emotion(body, session.rig)
+    tick, warnings = await parts.sessions.apply(session, played.keyframe)
+    return {
+        "tick": tick,
+        "recipe": played.recipe,
+        "action_units": dict(played.action_units),
+        "source": played.source,
+        "warnings": warnings,
+    }
+
+
+@router.patch("/{session_id}/tissue")
+async def edit_tissue(session_id: str, body: Changes, parts: Parts) -> dict[str, Any]:
+    """Change tissue constants live: the face moves over to the derived rig as it stands."""
+    session = await parts.sessions.get(session_id)
+    return await _edit(session, {"tissue": body}, parts)
+
+
+@router.patch("/{session_id}/muscles/{muscle}")
+async def edit_muscle(session_id: str, muscle: str, body: Changes, parts: Parts) -> dict[str, Any]:
+    """Change one muscle live: the face moves over to the derived rig as it stands."""
+    session = await parts.sessions.get(session_id)
+    try:
+        session.rig.muscle(muscle)
+    except UnknownName as error:
+        raise refused_by_engine(error, status=404) from error
+    return await _edit(session, {"muscles": {muscle: body}}, parts)
+
+
+async def _control(
+    session_id: str, body: Controls, parts: Components, *, replace: bool
+) -> dict[str, Any]:
+    session = await parts.sessions.get(session_id)
+    keyframe = controls_keyframe(body, replace=replace)
+    tick, warnings = await parts.sessions.apply(session, keyframe)
+    return {"tick": tick, "warnings": warnings}
+
+
+async def _edit(session: Session, changes: dict[str, Any], parts: Components) -> dict[str, Any]:
+    async with session.editing:
+        rig, created = await parts.rigs.derive(session.rig, changes)
+        tick = await parts.sessions.move(session, rig)
+    return {"tick": tick, "rig": rig.id, "created": created}

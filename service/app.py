@@ -1,0 +1,139 @@
+"""The application: every part wired together, errors in one shape, the viewer mounted."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from http import HTTPStatus
+
+import structlog
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.middleware.cors import CORSMiddleware
+from starlette.exceptions import HTTPException
+from starlette.responses import PlainTextResponse, Response
+from starlette.routing import Match, Mount
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
+
+from . import stream
+from .api import router
+from .bodies import explain
+from .components import Components
+from .errors import Refused, error_body, json_response
+from .guard import Guard, RateLimit
+from .idempotency import Idempotency
+from .metrics import CountRequests, Metrics
+from .settings import Settings
+from .version import version
+
+_LOG = structlog.get_logger("service")
+_NOT_BUILT = (
+    "The viewer is not built: run `npm ci && npm run build` in static/ (node 20.19 or newer), "
+    "or `make run`, then restart; the API is at /docs.\n"
+)
+# What the viewer's files never answer, so that a wrong method there is still said to be one.
+_API_PATHS = ("/api", "/metrics", "/docs", "/openapi.json")
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """Return an application of its own: nothing is shared with another one."""
+    settings = settings or Settings()
+    metrics = Metrics()
+    rate = RateLimit(settings.requests_per_second)
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        parts = Components.make(settings, metrics, rate)
+        metrics.watch_simulation(parts.runner.counters)
+        metrics.gauge("viewers", "Sockets open.", lambda: parts.sessions.viewer_count)
+        app.state.parts = parts
+        parts.start()
+        try:
+            yield
+        finally:
+            await parts.stop()
+
+    app = FastAPI(
+        title="Risorius",
+        version=version(),
+        summary="A physically simulated face, driven by FACS.",
+        lifespan=lifespan,
+        redoc_url=None,
+    )
+    app.include_router(router)
+    app.include_router(stream.router)
+    _mount_viewer(app, settings)
+    _answer_errors(app)
+    # The last one added is the outermost.
+    app.add_middleware(Idempotency)
+    if settings.allowed_origins:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=list(settings.allowed_origins),
+            allow_methods=["*"],
+            allow_headers=["*"],
+            expose_headers=["ETag", "Location", "Retry-After"],
+        )
+    app.add_middleware(Guard, settings=settings, rate=rate)
+    app.add_middleware(CountRequests, metrics=metrics)
+    return app
+
+
+class _ViewerMount(Mount):
+    """The viewer's files, at every path that is not the API's."""
+
+    def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        """Match what the viewer may answer."""
+        if str(scope.get("path", "")).startswith(_API_PATHS):
+            return Match.NONE, {}
+        return super().matches(scope)
+
+
+class _ViewerFiles(StaticFiles):
+    """The built viewer: named by content, so that only its page is asked for again."""
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """Return a file, with the headers that a page on a local address needs."""
+        response = await super().get_response(path, scope)
+        response.headers["X-Content-Type-Options"] = "nosniff"
+        response.headers["Content-Security-Policy"] = "frame-ancestors 'none'"
+        fixed = path.startswith("assets/")
+        response.headers["Cache-Control"] = "max-age=31536000, immutable" if fixed else "no-cache"
+        return response
+
+
+def _mount_viewer(app: FastAPI, settings: Settings) -> None:
+    if (settings.viewer_dir / "index.html").is_file():
+        files = _ViewerFiles(directory=settings.viewer_dir, html=True)
+        app.router.routes.append(_ViewerMount("/", files, name="viewer"))
+        return
+
+    @app.get("/", include_in_schema=False, response_class=PlainTextResponse)
+    async def no_viewer() -> PlainTextResponse:
+        return PlainTextResponse(_NOT_BUILT)
+
+
+def _answer_errors(app: FastAPI) -> None:
+    """Give every error the one shape."""
+
+    @app.exception_handler(Refused)
+    async def refused(_request: Request, error: Refused) -> Response:
+        return json_response(error.body(), status=error.status, headers=error.headers)
+
+    @app.exception_handler(RequestValidationError)
+    async def invalid(_request: Request, error: RequestValidationError) -> Response:
+        body = error_body("invalid_body", explain(list(error.errors())))
+        return json_response(body, status=422)
+
+    @app.exception_handler(HTTPException)
+    async def http_error(_request: Request, error: HTTPException) -> Response:
+        name = HTTPStatus(error.status_code).phrase.lower().replace(" ", "_")
+        body = error_body(name, str(error.detail))
+        return json_response(body, status=error.status_code, headers=error.headers)
+
+    @app.exception_handler(Exception)
+    async def failed(request: Request, error: Exception) -> Response:
+        _LOG.error("a request failed", path=request.url.path, exc_info=error)
+        message = "the service failed; its log says why"
+        return json_response(error_body("internal", message), status=500)

@@ -1,0 +1,208 @@
+"""What clients may say: the body of every call and every message of the socket, checked.
+
+Unknown fields, NaN and infinity are refused; numbers and sizes are bounded.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    JsonValue,
+    StrictBool,
+    TypeAdapter,
+)
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]
+Share = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=1)]
+Seconds = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=3600)]
+Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-180, le=180)]
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+Letter = Literal["A", "B", "C", "D", "E"]
+LayerName = Literal["idle", "mood", "emotion", "speech", "puppet"]
+Scale = Literal["linear", "banded"]
+
+_DEPTH_LIMIT = 8
+_ITEM_LIMIT = 20_000
+
+
+def _bounded(value: JsonValue) -> JsonValue:
+    """Refuse JSON that is deep, long, or holds a number that is not finite."""
+    items = 0
+    pending: list[tuple[JsonValue, int]] = [(value, 0)]
+    while pending:
+        item, depth = pending.pop()
+        items += 1
+        if depth > _DEPTH_LIMIT or items > _ITEM_LIMIT:
+            raise ValueError(f"at most {_DEPTH_LIMIT} levels and {_ITEM_LIMIT} items")
+        if isinstance(item, bool):
+            continue
+        if isinstance(item, (int, float)) and not (math.isfinite(item) and abs(item) <= 1e9):
+            raise ValueError("numbers are finite and at most 1e9")
+        if isinstance(item, dict):
+            pending += [(child, depth + 1) for child in item.values()]
+        elif isinstance(item, list):
+            pending += [(child, depth + 1) for child in item]
+    return value
+
+
+Changes = Annotated[
+    dict[Name, JsonValue], Field(max_length=256), AfterValidator(lambda value: _bounded(value))
+]
+
+
+class Body(BaseModel):
+    """Base of every body."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Jaw(Body):
+    """Where the jaw goes: degrees of opening and turn, mm of forward thrust."""
+
+    pitch: Degrees | None = None
+    yaw: Degrees | None = None
+    thrust: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-50, le=50)] | None = None
+
+
+class Gaze(Body):
+    """Where the eyes look, degrees: yaw to the face's left, pitch up."""
+
+    yaw: Degrees | None = None
+    pitch: Degrees | None = None
+
+
+class HeadPose(Body):
+    """How the head is held, degrees."""
+
+    yaw: Degrees | None = None
+    pitch: Degrees | None = None
+    roll: Degrees | None = None
+
+
+class Controls(Body):
+    """Commands to one layer of a face; what is not named stays as it is."""
+
+    action_units: dict[Name, Share | Letter] | None = Field(
+        default=None, max_length=128, examples=[{"AU12": 0.8, "L4": "B"}]
+    )
+    facs: str | None = Field(default=None, max_length=512, examples=["1C+2C+L12D+26"])
+    scale: Scale = Field(default="linear", description="How letters are read.")
+    muscles: dict[Name, Share] | None = Field(default=None, max_length=256)
+    jaw: Jaw | None = None
+    gaze: Gaze | None = None
+    head: HeadPose | None = None
+    arkit: dict[Name, Number] | None = Field(default=None, max_length=128)
+    visemes: dict[Name, Number] | None = Field(default=None, max_length=64)
+    fade: Seconds = Field(default=0.0, description="Seconds until the commands are reached.")
+    layer: LayerName = "puppet"
+    weight: Share = 1.0
+    ttl: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=86_400)] | None = Field(
+        default=None, description="Seconds after which the commands lapse."
+    )
+
+
+class Score(Body):
+    """One label of a scored distribution."""
+
+    label: Name
+    score: Share
+
+
+class EmotionCommand(Body):
+    """An emotion to play: one label, or scores of several."""
+
+    label: Name | None = None
+    intensity: Share = 1.0
+    scores: Annotated[list[Score], Field(min_length=1, max_length=64)] | None = None
+    fade_in: Seconds = 0.2
+    hold: Seconds | None = Field(
+        default=None, description="Seconds it is held; without it, it stays."
+    )
+    fade_out: Seconds = 0.4
+    layer: LayerName = "emotion"
+
+
+class ModelChoice(Body):
+    """The numerical model of a session; the defaults are the product's."""
+
+    integrator: Literal["rk2", "heun", "symplectic_euler", "rk4"] = "rk2"
+    forces: Literal["rest", "current"] = "rest"
+    springs: Literal["continuous", "literal"] = "continuous"
+    sphincter: Literal["ring", "literal"] = "ring"
+
+
+class NewSession(Body):
+    """A session to open."""
+
+    rig: Name = "standard"
+    model: ModelChoice = ModelChoice()
+
+
+class NewRig(Body):
+    """A rig to derive from another one."""
+
+    base: Name = "standard"
+    name: Name | None = None
+    recipe: Changes | None = None
+    tissue: Changes | None = None
+    muscles: Changes | None = None
+    action_units: Changes | None = None
+    emotions: Changes | None = None
+
+
+class KeyframeBody(Controls):
+    """One keyframe of a clip: the time at which it starts, and the controls it moves."""
+
+    time: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=86_400)]
+    replace: StrictBool = False
+    emotion: Name | EmotionCommand | None = None
+
+
+class NewClip(Body):
+    """A clip to render."""
+
+    rig: Name = "standard"
+    fps: Annotated[int, Field(ge=1, le=60)] = 30
+    timeline: list[KeyframeBody]
+    duration: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)] | None = None
+    model: ModelChoice = ModelChoice()
+
+
+class ControlsMessage(Controls):
+    """Controls over the socket: as PATCH, or as PUT with `replace`."""
+
+    type: Literal["controls"]
+    replace: StrictBool = False
+
+
+class EmotionMessage(EmotionCommand):
+    """An emotion over the socket."""
+
+    type: Literal["emotion"]
+
+
+class AckMessage(Body):
+    """The viewer has drawn the frame of this tick."""
+
+    type: Literal["ack"]
+    tick: Annotated[int, Field(ge=0, le=2**32 - 1)]
+
+
+Message = Annotated[ControlsMessage | EmotionMessage | AckMessage, Field(discriminator="type")]
+MESSAGE: TypeAdapter[ControlsMessage | EmotionMessage | AckMessage] = TypeAdapter(Message)
+
+
+def explain(errors: list[Any]) -> str:
+    """Return one sentence about the first of pydantic's `errors`."""
+    if not errors:
+        return "the body is not valid"
+    first = errors[0]
+    place = ".".join(str(part) for part in first.get("loc", ()) if part != "body")
+    more = f" ({len(errors) - 1} more)" if len(errors) > 1 else ""
+    return f"{place or 'body'}: {first.get('msg', 'not valid')}{more}"

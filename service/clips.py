@@ -1,0 +1,257 @@
+"""Clips: asked for, queued, rendered, stored; a table of jobs and no broker."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import structlog
+
+from engine import Cancelled, Clip, EngineError, Rig, Timeline, clip_to_glb
+
+from .bodies import NewClip
+from .commands import clip_timeline, model_of
+from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
+from .ground_truth import ground_truth_csv
+from .rigs import Rigs
+from .runner import Runner
+from .store import ClipRow, Store
+
+_LOG = structlog.get_logger("clips")
+# Share of the work, for the progress bar, that is simulation; the rest is writing the files.
+_SIMULATION_SHARE = 0.9
+_FINISHED = ("done", "failed", "cancelled")
+
+
+@dataclass(eq=False)
+class _Job:
+    """A clip on its way."""
+
+    task: asyncio.Task[None] | None = None
+    progress: float = 0.0
+    cancelled: threading.Event = field(default_factory=threading.Event)
+
+    def advance(self, share: float) -> None:
+        """Take the simulation's progress; called from the rendering thread."""
+        self.progress = _SIMULATION_SHARE * min(1.0, max(0.0, share))
+
+
+class Clips:
+    """Every clip of the store, and the jobs that render them."""
+
+    def __init__(
+        self,
+        store: Store,
+        rigs: Rigs,
+        runner: Runner,
+        *,
+        folder: Path,
+        threads: int,
+        limit: int,
+        queue_limit: int,
+        max_seconds: float,
+        max_keyframes: int,
+        on_end: Callable[[str], None],
+    ) -> None:
+        self._store = store
+        self._rigs = rigs
+        self._runner = runner
+        self._folder = folder
+        self._limit = limit
+        self._queue_limit = queue_limit
+        self._max_seconds = max_seconds
+        self._max_keyframes = max_keyframes
+        self._on_end = on_end
+        self._free = asyncio.Semaphore(threads)
+        self._jobs: dict[str, _Job] = {}
+
+    def start(self) -> None:
+        """Take up again what a stopped service left behind."""
+        for row in self._store.clips():
+            if row.status not in _FINISHED:
+                self._launch(row.id, NewClip.model_validate(row.request))
+
+    async def stop(self) -> None:
+        """Stop rendering; what is not done is taken up at the next start."""
+        jobs = list(self._jobs.values())
+        for job in jobs:
+            job.cancelled.set()
+            if job.task is not None:
+                job.task.cancel()
+        await asyncio.gather(*(job.task for job in jobs if job.task), return_exceptions=True)
+
+    async def submit(self, clip: NewClip) -> ClipRow:
+        """Queue a clip.
+
+        Raises:
+            Unprocessable: If it cannot be played, or is too long.
+            Busy: If the queue or the store is full.
+        """
+        rig = await self._rigs.get(clip.rig)
+        timeline, _ = self._checked(clip, rig)
+        if len(self._jobs) >= self._queue_limit:
+            raise Busy("queue_full", f"{self._queue_limit} clips are waiting", retry_after=10)
+        if self._store.clip_count() >= self._limit:
+            message = f"{self._limit} clips are kept; delete one first"
+            raise Busy("too_many_clips", message, retry_after=60)
+        request = clip.model_copy(update={"rig": rig.id, "duration": timeline.duration})
+        row = self._store.add_clip(
+            secrets.token_hex(16),
+            rig=rig.id,
+            fps=clip.fps,
+            request=request.model_dump(mode="json", exclude_unset=True),
+        )
+        self._launch(row.id, clip)
+        return row
+
+    async def wait(self, clip: str, seconds: float) -> ClipRow:
+        """Wait for a clip to end, `seconds` at most, and return how it stands."""
+        job = self._jobs.get(clip)
+        if job is not None and job.task is not None and seconds > 0:
+            await asyncio.wait({job.task}, timeout=seconds)
+        return self.row(clip)
+
+    def row(self, clip: str) -> ClipRow:
+        """Return a clip.
+
+        Raises:
+            NotFound: If there is none of that id.
+        """
+        row = self._store.clip(clip)
+        if row is None:
+            raise NotFound("unknown_clip", f"there is no clip {clip!r}")
+        return row
+
+    def rows(self) -> list[ClipRow]:
+        """Return every clip, oldest first."""
+        return list(self._store.clips())
+
+    def describe(self, row: ClipRow) -> dict[str, object]:
+        """Return what the API says of a clip."""
+        job = self._jobs.get(row.id)
+        progress = 1.0 if row.status == "done" else job.progress if job else 0.0
+        line: dict[str, object] = {
+            "id": row.id,
+            "rig": row.rig,
+            "fps": row.fps,
+            "status": row.status,
+            "progress": round(progress, 4),
+            "report": row.report,
+            "created": row.created,
+            "finished": row.finished,
+        }
+        if row.message:
+            line["message"] = row.message
+        return line
+
+    def file(self, clip: str, suffix: str) -> Path:
+        """Return the path of a finished clip's file.
+
+        Raises:
+            NotFound: If there is no such clip, or its file is gone.
+            Conflict: If it is not done.
+        """
+        row = self.row(clip)
+        if row.status != "done":
+            raise Conflict("clip_not_done", f"the clip is {row.status}; only a done one has files")
+        path = self._path(clip, suffix)
+        if not path.is_file():
+            raise NotFound("file_gone", f"the file of clip {clip!r} is no longer there")
+        return path
+
+    async def remove(self, clip: str) -> None:
+        """Cancel a clip that is not done; forget one that has ended.
+
+        Raises:
+            NotFound: If there is none of that id.
+        """
+        row = self.row(clip)
+        if row.status in _FINISHED:
+            self._store.remove_clip(clip)
+            for suffix in ("glb", "csv"):
+                self._path(clip, suffix).unlink(missing_ok=True)
+            return
+        self._store.keep_clip(clip, status="cancelled", message="cancelled by a client")
+        self._on_end("cancelled")
+        job = self._jobs.get(clip)
+        if job is not None and job.task is not None:
+            job.cancelled.set()
+            job.task.cancel()
+            await asyncio.wait({job.task}, timeout=5.0)
+
+    def _launch(self, clip: str, request: NewClip) -> None:
+        job = self._jobs[clip] = _Job()
+        job.task = asyncio.create_task(self._run(clip, request, job), name=f"clip {clip}")
+        job.task.add_done_callback(lambda _: self._jobs.pop(clip, None))
+
+    async def _run(self, clip: str, request: NewClip, job: _Job) -> None:
+        try:
+            async with self._free:
+                self._store.keep_clip(clip, status="running")
+                report = await self._render(clip, request, job)
+        except Cancelled:
+            return  # `remove` or `stop` has said what is to be kept.
+        except (EngineError, Refused) as error:
+            self._fail(clip, str(error))
+        except Exception:
+            _LOG.exception("a clip could not be rendered", clip=clip)
+            self._fail(clip, "the clip could not be rendered; the service's log says why")
+        else:
+            if not job.cancelled.is_set():
+                self._store.keep_clip(clip, status="done", report=report)
+                self._on_end("done")
+
+    async def _render(self, clip: str, request: NewClip, job: _Job) -> Mapping[str, Any]:
+        started = time.perf_counter()
+        rig = await self._rigs.get(request.rig)
+        timeline, warnings = self._checked(request, rig)
+        rendered = await self._runner.render(
+            rig,
+            timeline,
+            request.fps,
+            model=model_of(request.model, rig),
+            progress=job.advance,
+            cancelled=job.cancelled.is_set,
+        )
+        simulated = time.perf_counter()
+        size = await asyncio.to_thread(self._write, clip, rendered, timeline)
+        ended = time.perf_counter()
+        return {
+            "frames": len(rendered.displacements),
+            "duration": timeline.duration,
+            "bytes": size,
+            "simulation_seconds": round(simulated - started, 3),
+            "writing_seconds": round(ended - simulated, 3),
+            "times_real_time": round(timeline.duration / max(ended - started, 1e-6), 2),
+            "warnings": warnings,
+        }
+
+    def _write(self, clip: str, rendered: Clip, timeline: Timeline) -> int:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        data = clip_to_glb(rendered)
+        self._path(clip, "glb").write_bytes(data)
+        self._path(clip, "csv").write_text(ground_truth_csv(rendered, timeline))
+        return len(data)
+
+    def _checked(self, clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
+        if len(clip.timeline) > self._max_keyframes:
+            message = f"timeline: {len(clip.timeline)} keyframes; at most {self._max_keyframes}"
+            raise Unprocessable("too_many_keyframes", message)
+        timeline, warnings = clip_timeline(clip, rig)
+        if timeline.duration > self._max_seconds:
+            message = f"the clip lasts {timeline.duration:g} s; at most {self._max_seconds:g} s"
+            raise Unprocessable("clip_too_long", message)
+        return timeline, warnings
+
+    def _fail(self, clip: str, message: str) -> None:
+        self._store.keep_clip(clip, status="failed", message=message)
+        self._on_end("failed")
+
+    def _path(self, clip: str, suffix: str) -> Path:
+        return self._folder / f"{clip}.{suffix}"

@@ -1,0 +1,246 @@
+"""From what clients say to keyframes that the engine plays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from engine import (
+    LETTERS,
+    EngineError,
+    Keyframe,
+    Model,
+    Rig,
+    Term,
+    Timeline,
+    blend,
+    format_facs,
+    parse_facs,
+)
+
+from .bodies import (
+    Controls,
+    EmotionCommand,
+    KeyframeBody,
+    ModelChoice,
+    NewClip,
+)
+from .errors import Unprocessable, refused_by_engine
+
+# FACS' own bands of the intensity scale are uneven: trace, slight, marked, severe, maximum.
+BANDED: Mapping[str, float] = {"A": 0.10, "B": 0.20, "C": 0.55, "D": 0.90, "E": 1.00}
+_SECONDS_AFTER_LAST = 1.0
+
+
+@dataclass(frozen=True)
+class Played:
+    """An emotion as it is played.
+
+    Attributes:
+        keyframe: The command.
+        recipe: What it plays, as a FACS string with the nearest letters.
+        action_units: The same, in exact intensities.
+        source: Where the recipe comes from.
+    """
+
+    keyframe: Keyframe
+    recipe: str
+    action_units: Mapping[str, float]
+    source: str
+
+
+def controls_keyframe(controls: Controls, *, replace: bool) -> Keyframe:
+    """Return the keyframe that `controls` ask for; with `replace`, the layer holds nothing else.
+
+    Raises:
+        Unprocessable: For a FACS string that cannot be read, or what is not available yet.
+    """
+    for name in ("arkit", "visemes"):
+        if getattr(controls, name) is not None:
+            raise Unprocessable(
+                "not_available", f"{name} controls are not available yet; use action_units"
+            )
+    return Keyframe(
+        layer=controls.layer,
+        action_units=_action_units(controls),
+        muscles=dict(controls.muscles or {}),
+        jaw=_given(controls.jaw),
+        gaze=_given(controls.gaze),
+        head=_given(controls.head),
+        fade=controls.fade,
+        hold=controls.ttl,
+        weight=controls.weight,
+        replace=replace,
+    )
+
+
+def play_emotion(command: EmotionCommand, rig: Rig) -> Played:
+    """Return the keyframe and the recipe of a label, or of a scored list of labels.
+
+    Raises:
+        Unprocessable: If both or neither is given, or a label is not known.
+    """
+    if (command.label is None) == (command.scores is None):
+        raise Unprocessable("invalid_body", "give either 'label' or 'scores'")
+    try:
+        if command.label is not None:
+            return _play_label(command, command.label, rig)
+        return _play_scores(command, rig)
+    except EngineError as error:
+        raise refused_by_engine(error) from error
+
+
+def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
+    """Return the timeline of a clip, checked against its rig, and what the check warns of.
+
+    Raises:
+        Unprocessable: With the first keyframe that cannot be played.
+    """
+    keyframes = []
+    warnings = []
+    for index, body in enumerate(clip.timeline):
+        try:
+            keyframe = _clip_keyframe(body, rig)
+            warnings += [f"keyframe {index}: {warning}" for warning in rig.check(keyframe)]
+        except EngineError as error:
+            refused = refused_by_engine(error)
+            refused.message = f"keyframe {index}: {refused.message}"
+            raise refused from error
+        keyframes.append(keyframe)
+    duration = clip.duration
+    if duration is None:
+        ends = [k.time + k.fade + (k.hold + k.fade_out if k.hold else 0.0) for k in keyframes]
+        duration = max(ends, default=0.0) + _SECONDS_AFTER_LAST
+    try:
+        return Timeline(tuple(keyframes), duration), warnings
+    except EngineError as error:
+        raise refused_by_engine(error) from error
+
+
+def model_of(choice: ModelChoice, rig: Rig) -> Model:
+    """Return the rig's own model with what a client chose in place."""
+    return Model.for_rig(rig, **choice.model_dump(exclude_unset=True))
+
+
+def hold(held: dict[str, Keyframe], keyframe: Keyframe) -> None:
+    """Take `keyframe` into `held`: for each layer one keyframe with all that it holds.
+
+    A command that lets go by itself leaves nothing.
+    """
+    before = held.get(keyframe.layer)
+    if keyframe.hold is not None:
+        if keyframe.replace:
+            held.pop(keyframe.layer, None)
+        return
+    if before is None or keyframe.replace:
+        before = Keyframe(layer=keyframe.layer)
+    units = {} if keyframe.emotion is not None else before.action_units
+    held[keyframe.layer] = replace(
+        keyframe,
+        action_units={**units, **keyframe.action_units},
+        muscles={**before.muscles, **keyframe.muscles},
+        jaw={**before.jaw, **keyframe.jaw},
+        gaze={**before.gaze, **keyframe.gaze},
+        head={**before.head, **keyframe.head},
+        emotion=keyframe.emotion or before.emotion,
+        fade=0.0,
+        replace=False,
+    )
+
+
+def held_to_json(held: Mapping[str, Keyframe]) -> list[Any]:
+    """Return what the layers hold as plain data."""
+    return [{**keyframe.to_json(), "layer": layer} for layer, keyframe in held.items()]
+
+
+def held_from_json(data: Sequence[Mapping[str, Any]], rig: Rig) -> list[Keyframe]:
+    """Read what `held_to_json` wrote, leaving out what this rig no longer plays."""
+    known = {f.name for f in fields(Keyframe)}
+    keyframes = []
+    for entry in data:
+        values = {name: value for name, value in entry.items() if name in known}
+        if "emotion" in values:
+            values["emotion"] = (values["emotion"]["label"], values["emotion"]["intensity"])
+        keyframe = Keyframe(**values)
+        try:
+            rig.check(keyframe)
+        except EngineError:
+            continue
+        keyframes.append(keyframe)
+    return keyframes
+
+
+def _action_units(controls: Controls) -> dict[str, float]:
+    """Return intensities from numbers, letters and the FACS string; what is named wins."""
+    letters = BANDED if controls.scale == "banded" else LETTERS
+    units = {}
+    if controls.facs is not None:
+        try:
+            terms = parse_facs(controls.facs)
+        except EngineError as error:
+            raise refused_by_engine(error) from error
+        units = {term.key: letters[format_facs([term])[-1]] for term in terms}
+    for name, value in (controls.action_units or {}).items():
+        units[name] = letters[value] if isinstance(value, str) else value
+    return units
+
+
+def _given(part: Any) -> dict[str, float]:
+    return {} if part is None else dict(part.model_dump(exclude_none=True))
+
+
+def _play_label(command: EmotionCommand, label: str, rig: Rig) -> Played:
+    emotion = rig.resolve_emotion(label)
+    keyframe = replace(_emotion_keyframe(command), emotion=(emotion.name, command.intensity))
+    units = {term.key: term.intensity * command.intensity for term in emotion.terms}
+    return Played(keyframe, emotion.recipe, units, emotion.source)
+
+
+def _play_scores(command: EmotionCommand, rig: Rig) -> Played:
+    scores = [(score.label, score.score) for score in command.scores or ()]
+    units = blend(rig.emotions, scores, command.intensity)
+    keyframe = replace(_emotion_keyframe(command), action_units=units, replace=True)
+    sources = {rig.resolve_emotion(label).source: None for label, _ in scores}
+    terms = [_term(key, intensity, rig) for key, intensity in units.items()]
+    return Played(keyframe, format_facs(terms), units, "; ".join(sources))
+
+
+def _term(key: str, intensity: float, rig: Rig) -> Term:
+    unit, side = rig.resolve_unit(key)
+    return Term(unit.name, side, intensity)
+
+
+def _emotion_keyframe(command: EmotionCommand) -> Keyframe:
+    return Keyframe(
+        layer=command.layer,
+        fade=command.fade_in,
+        hold=command.hold,
+        fade_out=command.fade_out,
+    )
+
+
+def _clip_keyframe(body: KeyframeBody, rig: Rig) -> Keyframe:
+    keyframe = controls_keyframe(body, replace=body.replace)
+    if body.emotion is not None:
+        keyframe = _with_emotion(keyframe, body, rig)
+    return replace(keyframe, time=body.time)
+
+
+def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig) -> Keyframe:
+    """Return `keyframe` with the emotion of `body`; fields that `body` gives itself win."""
+    command = body.emotion
+    if isinstance(command, str):
+        command = EmotionCommand(label=command, fade_in=body.fade, hold=body.ttl)
+    played = play_emotion(command or EmotionCommand(), rig).keyframe
+    given = body.model_fields_set
+    return replace(
+        keyframe,
+        layer=body.layer if "layer" in given else played.layer,
+        emotion=played.emotion,
+        action_units={**played.action_units, **keyframe.action_units},
+        fade=body.fade if "fade" in given else played.fade,
+        hold=body.ttl if "ttl" in given else played.hold,
+        fade_out=played.fade_out,
+        replace=keyframe.replace or played.replace,
+    )

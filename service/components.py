@@ -1,0 +1,120 @@
+"""Everything a route may need, made once for each application."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass, field
+from typing import Annotated
+
+import structlog
+from fastapi import Depends, Request
+
+from engine import Model, Timeline
+
+from .clips import Clips
+from .guard import RateLimit
+from .metrics import Metrics
+from .rigs import Rigs
+from .runner import EmbeddedRunner
+from .sessions import Sessions
+from .settings import Settings
+from .store import Store
+
+_LOG = structlog.get_logger("service")
+_WARM_UP = "warm-up"
+
+
+@dataclass(eq=False)
+class Components:
+    """The parts of a running service.
+
+    Attributes:
+        ready: Set once kernels are compiled and the first rig is built.
+        stage: What is being done until then, in words.
+    """
+
+    settings: Settings
+    metrics: Metrics
+    rate: RateLimit
+    store: Store
+    rigs: Rigs
+    runner: EmbeddedRunner
+    sessions: Sessions
+    clips: Clips
+    ready: asyncio.Event = field(default_factory=asyncio.Event)
+    stage: str = "starting"
+    _warming: asyncio.Task[None] | None = None
+
+    @classmethod
+    def make(cls, settings: Settings, metrics: Metrics, rate: RateLimit) -> Components:
+        """Wire the parts; nothing runs before `start`."""
+        store = Store(settings.database)
+        rigs = Rigs(store, cache_dir=settings.cache_dir / "files", limit=settings.max_rigs)
+        runner = EmbeddedRunner(
+            simulation_threads=settings.simulation_threads, render_threads=settings.render_threads
+        )
+        sessions = Sessions(
+            runner,
+            rigs,
+            store,
+            limit=settings.max_sessions,
+            viewer_limit=settings.max_viewers,
+            idle_seconds=settings.session_idle_seconds,
+        )
+        clips = Clips(
+            store,
+            rigs,
+            runner,
+            folder=settings.data_dir / "clips",
+            threads=settings.render_threads,
+            limit=settings.max_clips,
+            queue_limit=settings.max_queued_clips,
+            max_seconds=settings.max_clip_seconds,
+            max_keyframes=settings.max_keyframes,
+            on_end=lambda status: metrics.clips.labels(status).inc(),
+        )
+        return cls(settings, metrics, rate, store, rigs, runner, sessions, clips)
+
+    def start(self) -> None:
+        """Start the threads and tasks, and warm up beside them."""
+        self.runner.start()
+        self.sessions.start()
+        self._warming = asyncio.create_task(self._warm_up(), name="warm-up")
+
+    async def stop(self) -> None:
+        """Stop everything, and keep what is to be kept."""
+        if self._warming is not None:
+            self._warming.cancel()
+            await asyncio.gather(self._warming, return_exceptions=True)
+        await self.clips.stop()
+        await self.sessions.stop()
+        await asyncio.to_thread(self.runner.stop)
+        await asyncio.to_thread(self.rigs.close)
+        self.store.close()
+
+    async def _warm_up(self) -> None:
+        """Build the first rig and compile every kernel a face needs."""
+        try:
+            self.stage = "building the standard rig"
+            rig = await self.rigs.get("standard")
+            self.stage = "compiling the simulation"
+            await self.runner.open(_WARM_UP, rig, Timeline((), 1.0), Model.for_rig(rig))
+            await self.runner.view(_WARM_UP)
+            await self.runner.close(_WARM_UP)
+            self.stage = "writing the surface"
+            await self.rigs.surface(rig)
+        except Exception as error:
+            self.stage = f"failed: {error}"
+            _LOG.exception("the service could not warm up")
+            return
+        self.stage = "ready"
+        self.ready.set()
+        self.clips.start()
+
+
+def _parts(request: Request) -> Components:
+    parts: Components = request.app.state.parts
+    return parts
+
+
+Parts = Annotated[Components, Depends(_parts)]

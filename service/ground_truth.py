@@ -1,0 +1,58 @@
+"""What a clip truly shows, a line a frame: activations, pose, and landmarks in millimetres."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+
+from engine import Clip, Timeline
+
+_POSE = (
+    "jaw_pitch",
+    "jaw_yaw",
+    "jaw_thrust",
+    "gaze_left_yaw",
+    "gaze_left_pitch",
+    "gaze_right_yaw",
+    "gaze_right_pitch",
+    "head_yaw",
+    "head_pitch",
+    "head_roll",
+)
+
+
+def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
+    """Return a table: frame, time [s], activation of each muscle, pose, landmarks [mm].
+
+    Landmarks are in the head's frame, before the head's pose.
+    """
+    head = clip.rig.head
+    names = list(head.landmarks)
+    places = np.array([head.landmarks[name] for name in names], dtype=np.int64)
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(
+        [
+            "frame",
+            "time",
+            *clip.rig.muscle_names,
+            *_POSE,
+            *(f"{name}.{axis}" for name in names for axis in "xyz"),
+        ]
+    )
+    for index, displacements in enumerate(clip.displacements):
+        pose = clip.poses[index]
+        drawn = head.drawn.deform(displacements.astype(np.float64), head.eyes)[places]
+        table.writerow(
+            [
+                index,
+                f"{index / clip.fps:.6g}",
+                *(f"{value:.4f}" for value in clip.activations[index]),
+                *(f"{value:.3f}" for value in (pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)),
+                *(f"{value:.3f}" for value in (*pose.gaze_left, *pose.gaze_right, *pose.head)),
+                *(f"{value:.3f}" for value in drawn.ravel()),
+            ]
+        )
+    return text.getvalue()

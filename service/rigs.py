@@ -1,0 +1,157 @@
+"""The rigs that sessions and clips use: built in, or derived and kept in the store."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import structlog
+
+from engine import (
+    BUILTIN_RIGS,
+    EngineError,
+    Rig,
+    builtin_rig,
+    rig_to_glb,
+    surface_to_glb,
+)
+
+from .errors import Busy, NotFound, Unprocessable, refused_by_engine
+from .shelf import Shelf
+from .store import Store
+
+_LOG = structlog.get_logger("rigs")
+_RIGS_IN_MEMORY = 64
+_FILES_IN_MEMORY = 16
+_CHANGES = ("tissue", "muscles", "action_units", "emotions", "name")
+
+
+class Rigs:
+    """Rigs by name or id, and the GLB files made from them."""
+
+    def __init__(self, store: Store, *, cache_dir: Path, limit: int) -> None:
+        self._store = store
+        self._cache_dir = cache_dir
+        self._limit = limit
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="rigs")
+        self._files_pool = ThreadPoolExecutor(1, thread_name_prefix="files")
+        self._rigs: Shelf[Rig] = Shelf(_RIGS_IN_MEMORY, self._pool)
+        self._files: Shelf[bytes] = Shelf(_FILES_IN_MEMORY, self._files_pool)
+        self._names: dict[str, str] = {}
+
+    def close(self) -> None:
+        """Stop the pools."""
+        self._pool.shutdown(wait=True, cancel_futures=True)
+        self._files_pool.shutdown(wait=True, cancel_futures=True)
+
+    async def get(self, name: str) -> Rig:
+        """Return the rig of that name (`standard`) or id.
+
+        Raises:
+            NotFound: If there is none.
+        """
+        name = self._names.get(name, name)
+        if name in BUILTIN_RIGS:
+            return await self._built_in(name)
+        row = self._store.rig(name)
+        if row is None:
+            for built_in in BUILTIN_RIGS:  # An id may be that of a rig not built so far.
+                rig = await self._built_in(built_in)
+                if rig.id == name:
+                    return rig
+            raise self._unknown(name)
+        base = await self.get(row.base)
+        return await self._rigs.get(name, lambda: _derive(base, row.changes))
+
+    async def derive(self, base: Rig, changes: Mapping[str, Any]) -> tuple[Rig, bool]:
+        """Return the rig that `changes` make of `base`, and whether it is new here.
+
+        Raises:
+            Unprocessable: If a name is unknown or a value cannot be used.
+            Busy: If no more rigs can be kept.
+        """
+        changes = {key: value for key, value in changes.items() if value is not None}
+        rig = await self._rigs.get(_key(base.id, changes), lambda: _derive(base, changes))
+        if self._names.get(rig.id, rig.id) in BUILTIN_RIGS or self._store.rig(rig.id):
+            return rig, False
+        if len(self._store.rigs()) >= self._limit:
+            raise Busy("too_many_rigs", f"at most {self._limit} rigs are kept", retry_after=60)
+        self._store.add_rig(rig.id, base=base.id, changes=changes)
+        self._rigs.put(rig.id, rig)
+        return rig, True
+
+    async def lines(self) -> list[dict[str, object]]:
+        """Return one line for each rig."""
+        lines: list[dict[str, object]] = []
+        for name in BUILTIN_RIGS:
+            rig = await self._built_in(name)
+            lines.append({"id": rig.id, "name": name, "base": None})
+        for row in self._store.rigs():
+            name = str(row.changes.get("name") or row.id)
+            lines.append({"id": row.id, "name": name, "base": row.base})
+        return lines
+
+    async def glb(self, rig: Rig) -> bytes:
+        """Return the rest head with its action units as morph targets."""
+        return await self._file(f"rig-{rig.id}", lambda: rig_to_glb(rig))
+
+    async def surface(self, rig: Rig) -> bytes:
+        """Return the tissue surface and its map to the drawn surface."""
+        return await self._file(f"surface-{rig.id}", lambda: surface_to_glb(rig))
+
+    async def file(self, key: str, make: Callable[[], bytes]) -> bytes:
+        """Return another file that depends on its `key` alone."""
+        return await self._file(hashlib.sha256(key.encode()).hexdigest()[:32], make)
+
+    async def _built_in(self, name: str) -> Rig:
+        rig = await self._rigs.get(name, lambda: builtin_rig(name))
+        self._names[rig.id] = name
+        return rig
+
+    async def _file(self, key: str, make: Callable[[], bytes]) -> bytes:
+        try:
+            return await self._files.get(key, lambda: _stored(self._cache_dir / f"{key}.glb", make))
+        except EngineError as error:
+            raise refused_by_engine(error) from error
+
+    def _unknown(self, name: str) -> NotFound:
+        known = [*BUILTIN_RIGS, *(row.id for row in self._store.rigs())]
+        return NotFound("unknown_rig", f"there is no rig {name!r}", known=known)
+
+
+def _derive(base: Rig, changes: Mapping[str, Any]) -> Rig:
+    """Derive a rig from what a client sent, whatever its shape."""
+    try:
+        return base.derive(**{key: changes.get(key) for key in _CHANGES})
+    except EngineError as error:
+        raise refused_by_engine(error) from error
+    except (TypeError, ValueError, KeyError, AttributeError, ArithmeticError, IndexError) as error:
+        _LOG.warning("a rig could not be derived", error=repr(error))
+        raise Unprocessable(
+            "invalid_value", f"these changes cannot be applied to rig {base.id}: {error}"
+        ) from error
+
+
+def _key(base: str, changes: Mapping[str, Any]) -> str:
+    return f"{base}+{hashlib.sha256(repr(sorted(changes.items())).encode()).hexdigest()}"
+
+
+def _stored(path: Path, make: Callable[[], bytes]) -> bytes:
+    """Return the file at `path`, or make and keep it; an unwritable folder costs only time."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        data = make()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
+            file.write(data)
+        os.replace(file.name, path)
+    except OSError:
+        _LOG.warning("the cache folder cannot be written", path=str(path.parent))
+    return data

@@ -1,0 +1,351 @@
+"""Live sessions: who watches which face, its latest frame, and what it was told."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import time
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import structlog
+
+from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline
+
+from .commands import held_from_json, held_to_json, hold
+from .errors import Busy, NotFound, refused_by_engine
+from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_frame
+from .rigs import Rigs
+from .runner import Move, Runner, Tick, View
+from .store import SessionRow, Store
+from .viewers import Viewer
+
+_LOG = structlog.get_logger("sessions")
+_COMMANDS_KEPT = 20_000
+_BEATS_PER_SECOND = 5
+
+
+@dataclass(frozen=True)
+class Command:
+    """One line of a session's timeline: what took effect at which tick."""
+
+    tick: int
+    command: Keyframe | Move
+
+
+@dataclass(eq=False)
+class Session:
+    """One face, its viewers and its timeline so far.
+
+    Attributes:
+        id: Unguessable name.
+        rig: The rig it is on now.
+        model: Its numerical model.
+        created: When it was opened [s since 1970].
+        used: When somebody last spoke to it or watched it.
+        frame: Its latest frame.
+        held: For each layer, one keyframe with all that it holds; survives a restart.
+        commands: The timeline so far, oldest first.
+        viewers: The sockets that watch it.
+        editing: Held while a live edit derives a rig, so that edits follow each other.
+    """
+
+    id: str
+    rig: Rig
+    model: Model
+    created: float
+    used: float
+    frame: Frame
+    held: dict[str, Keyframe] = field(default_factory=dict)
+    commands: deque[Command] = field(default_factory=lambda: deque(maxlen=_COMMANDS_KEPT))
+    viewers: set[Viewer] = field(default_factory=set)
+    editing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    unsaved: bool = False
+    state_changed: bool = False
+    _encoded: bytes | None = None
+
+    @property
+    def encoded(self) -> bytes:
+        """The latest frame as bytes: encoded once, for every viewer."""
+        if self._encoded is None:
+            self._encoded = encode_frame(surface_frame(self.frame, self.rig.jaw))
+        return self._encoded
+
+    def show(self, frame: Frame) -> None:
+        """Take a newer frame and wake the viewers."""
+        self.state_changed |= frame.asleep and not self.frame.asleep
+        self.frame = frame
+        self._encoded = None
+        for viewer in self.viewers:
+            viewer.offer_frame()
+
+    def tell(self, event: Mapping[str, Any]) -> None:
+        """Send an event to every viewer."""
+        for viewer in self.viewers:
+            viewer.offer(event)
+
+    def describe(self) -> dict[str, object]:
+        """Return what the API says of it."""
+        return {
+            "id": self.id,
+            "rig": self.rig.id,
+            "rig_name": self.rig.name,
+            "stream": f"/api/sessions/{self.id}/stream",
+            "surface": f"/api/rigs/{self.rig.id}/surface.glb",
+            "tick": self.frame.tick,
+            "asleep": self.frame.asleep,
+            "viewers": len(self.viewers),
+            "created": self.created,
+        }
+
+    def on_rig(self) -> dict[str, object]:
+        """Return what a viewer needs to know of the rig."""
+        return {
+            "rig": self.rig.id,
+            "surface": f"/api/rigs/{self.rig.id}/surface.glb",
+            "vertices": len(self.rig.head.points),
+            "rate": RATE,
+            "grid": GRID_METRES,
+            "tick": self.frame.tick,
+        }
+
+    def hello(self, view: View) -> dict[str, object]:
+        """Return the first event of a socket."""
+        return {
+            "type": "hello",
+            "protocol": SUBPROTOCOL,
+            "session": self.id,
+            **self.on_rig(),
+            "state": view.report,
+        }
+
+
+class Sessions:
+    """Every session of this process; sleeping rows of the store are woken when asked for."""
+
+    def __init__(
+        self,
+        runner: Runner,
+        rigs: Rigs,
+        store: Store,
+        *,
+        limit: int,
+        viewer_limit: int,
+        idle_seconds: float,
+    ) -> None:
+        self._runner = runner
+        self._rigs = rigs
+        self._store = store
+        self._limit = limit
+        self._viewer_limit = viewer_limit
+        self._idle_seconds = idle_seconds
+        self._live: dict[str, Session] = {}
+        self._opening = asyncio.Lock()
+        self._tasks: list[asyncio.Task[None]] = []
+
+    def start(self) -> None:
+        """Start to hand frames on."""
+        self._tasks = [
+            asyncio.create_task(self._hand_on(), name="frames"),
+            asyncio.create_task(self._beat(), name="beat"),
+        ]
+
+    async def stop(self) -> None:
+        """Save every session and let its viewers go."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        for session in self._live.values():
+            self._save(session)
+            for viewer in session.viewers:
+                viewer.end(1012, "the service stops")
+
+    @property
+    def viewer_count(self) -> int:
+        """How many sockets are open."""
+        return sum(len(session.viewers) for session in self._live.values())
+
+    def lines(self) -> list[dict[str, object]]:
+        """Return one line for each session, oldest first."""
+        lines: list[dict[str, object]] = []
+        for row in self._store.sessions():
+            session = self._live.get(row.id)
+            stream = f"/api/sessions/{row.id}/stream"
+            lines.append(
+                session.describe()
+                if session
+                else {"id": row.id, "rig": row.rig, "stream": stream, "created": row.created}
+            )
+        return lines
+
+    async def open(self, rig: Rig, model: Model) -> Session:
+        """Make a new session.
+
+        Raises:
+            Busy: If there are as many as are allowed.
+        """
+        async with self._opening:
+            if len(self._store.sessions()) >= self._limit:
+                message = f"at most {self._limit} sessions are open at once; close one first"
+                raise Busy("too_many_sessions", message, retry_after=10)
+            row = self._store.add_session(secrets.token_hex(16), rig=rig.id, model=asdict(model))
+            try:
+                return await self._wake(row, rig, model)
+            except BaseException:
+                self._store.remove_session(row.id)
+                raise
+
+    async def get(self, session_id: str) -> Session:
+        """Return a session, woken from the store if need be.
+
+        Raises:
+            NotFound: If there is none of that id.
+        """
+        session = self._live.get(session_id)
+        if session is None:
+            async with self._opening:
+                session = self._live.get(session_id) or await self._restore(session_id)
+        session.used = time.time()
+        return session
+
+    async def close(self, session_id: str) -> None:
+        """End a session for good.
+
+        Raises:
+            NotFound: If there is none of that id.
+        """
+        session = await self.get(session_id)
+        if self._live.pop(session_id, None) is None:
+            raise _unknown(session_id)
+        self._store.remove_session(session_id)
+        for viewer in session.viewers:
+            viewer.end(1000, "the session was closed")
+        await self._runner.close(session_id)
+
+    async def apply(self, session: Session, keyframe: Keyframe) -> tuple[int, list[str]]:
+        """Apply a command; return the tick at which it takes effect, and warnings.
+
+        Raises:
+            Refused: If a name or a value of it does not fit the rig.
+        """
+        try:
+            warnings = session.rig.check(keyframe)
+            tick = await self._runner.apply(session.id, keyframe)
+        except EngineError as error:
+            raise refused_by_engine(error) from error
+        session.commands.append(Command(tick, keyframe))
+        hold(session.held, keyframe)
+        session.unsaved = session.state_changed = True
+        return tick, warnings
+
+    async def move(self, session: Session, rig: Rig) -> int:
+        """Carry a session's face over to another rig; return the tick of it."""
+        move = Move(rig)
+        tick = await self._runner.apply(session.id, move)
+        session.commands.append(Command(tick, move))
+        session.rig = rig
+        session.unsaved = session.state_changed = True
+        session.tell({"type": "rig", "session": session.id, **session.on_rig()})
+        return tick
+
+    async def view(self, session: Session) -> View:
+        """Return the face as it stands."""
+        return await self._runner.view(session.id)
+
+    def watch(self, session: Session) -> Viewer:
+        """Add a viewer.
+
+        Raises:
+            Busy: If the session has as many as are allowed.
+        """
+        if len(session.viewers) >= self._viewer_limit:
+            message = f"at most {self._viewer_limit} viewers watch one session"
+            raise Busy("too_many_viewers", message)
+        viewer = Viewer()
+        session.viewers.add(viewer)
+        return viewer
+
+    def leave(self, session: Session, viewer: Viewer) -> None:
+        """Forget a viewer."""
+        session.viewers.discard(viewer)
+        session.used = time.time()
+
+    # What goes on by itself.
+
+    async def _hand_on(self) -> None:
+        async for tick in self._runner.ticks():
+            try:
+                self._show(tick)
+            except Exception:
+                _LOG.exception("frames could not be handed on")
+
+    def _show(self, tick: Tick) -> None:
+        for session_id, frame in tick.frames.items():
+            session = self._live.get(session_id)
+            if session is not None:
+                session.show(frame)
+        for session_id in tick.reset:
+            session = self._live.get(session_id)
+            if session is not None:
+                session.held.clear()
+                session.unsaved = session.state_changed = True
+                message = "the simulation left the finite numbers; the face is back at rest"
+                session.tell({"type": "error", "error": "diverged", "message": message})
+
+    async def _beat(self) -> None:
+        """Send states, repeat sleeping frames, save, and close what nobody uses."""
+        beat = 0
+        while True:
+            await asyncio.sleep(1 / _BEATS_PER_SECOND)
+            beat += 1
+            for session in list(self._live.values()):
+                try:
+                    await self._tend(session, each_second=beat % _BEATS_PER_SECOND == 0)
+                except NotFound:
+                    continue  # It was closed while it was being tended.
+                except Exception:
+                    _LOG.exception("a session could not be tended", session=session.id)
+
+    async def _tend(self, session: Session, *, each_second: bool) -> None:
+        if session.viewers and (session.state_changed or not session.frame.asleep):
+            session.state_changed = False
+            view = await self._runner.view(session.id)
+            session.tell({"type": "state", "tick": view.frame.tick, **view.report})
+        if not each_second:
+            return
+        for viewer in session.viewers:
+            viewer.repeat_frame()
+        if session.unsaved:
+            self._save(session)
+        if not session.viewers and time.time() - session.used > self._idle_seconds:
+            _LOG.info("a session that nobody uses is closed", session=session.id)
+            await self.close(session.id)
+
+    def _save(self, session: Session) -> None:
+        held = held_to_json(session.held)
+        self._store.keep_session(session.id, rig=session.rig.id, held=held, used=session.used)
+        session.unsaved = False
+
+    async def _restore(self, session_id: str) -> Session:
+        row = self._store.session(session_id)
+        if row is None:
+            raise _unknown(session_id)
+        rig = await self._rigs.get(row.rig)
+        return await self._wake(row, rig, Model.for_rig(rig, **row.model))
+
+    async def _wake(self, row: SessionRow, rig: Rig, model: Model) -> Session:
+        timeline = Timeline(tuple(held_from_json(row.held, rig)), duration=1.0)
+        await self._runner.open(row.id, rig, timeline, model)
+        view = await self._runner.view(row.id)
+        session = Session(row.id, rig, model, row.created, time.time(), view.frame)
+        for keyframe in timeline.keyframes:
+            session.commands.append(Command(view.frame.tick, keyframe))
+            hold(session.held, keyframe)
+        self._live[row.id] = session
+        return session
+
+
+def _unknown(session_id: str) -> NotFound:
+    return NotFound("unknown_session", f"there is no session {session_id!r}")

@@ -1,0 +1,59 @@
+"""Values that are slow to make: each is made once, however many ask, and the latest are kept."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict
+from collections.abc import Callable
+from concurrent.futures import Executor
+from typing import Generic, TypeVar
+
+Value = TypeVar("Value")
+
+
+class Shelf(Generic[Value]):
+    """A bounded memory of values by key, made in a thread pool."""
+
+    def __init__(self, size: int, pool: Executor) -> None:
+        self._size = size
+        self._pool = pool
+        self._tasks: OrderedDict[str, asyncio.Future[Value]] = OrderedDict()
+
+    def peek(self, key: str) -> Value | None:
+        """Return the value if it is there already."""
+        task = self._tasks.get(key)
+        return task.result() if task and task.done() and not task.exception() else None
+
+    def put(self, key: str, value: Value) -> None:
+        """Keep a value that was made elsewhere."""
+        done: asyncio.Future[Value] = asyncio.get_running_loop().create_future()
+        done.set_result(value)
+        self._keep(key, done)
+
+    async def get(self, key: str, make: Callable[[], Value]) -> Value:
+        """Return the value of `key`; `make` it in the pool when nobody has.
+
+        A failure is handed to everybody who waits, and not kept.
+        """
+        task = self._tasks.get(key)
+        if task is None:
+            task = asyncio.get_running_loop().run_in_executor(self._pool, make)
+            self._keep(key, task)
+            task.add_done_callback(lambda done: self._drop_failed(key, done))
+        else:
+            self._tasks.move_to_end(key)
+        # Shielded: one asker who leaves must not cancel it for the others.
+        return await asyncio.shield(task)
+
+    def _keep(self, key: str, task: asyncio.Future[Value]) -> None:
+        self._tasks[key] = task
+        self._tasks.move_to_end(key)
+        for old, kept in list(self._tasks.items()):
+            if len(self._tasks) <= self._size:
+                return
+            if kept.done():
+                del self._tasks[old]
+
+    def _drop_failed(self, key: str, task: asyncio.Future[Value]) -> None:
+        if (task.cancelled() or task.exception()) and self._tasks.get(key) is task:
+            del self._tasks[key]

@@ -1,0 +1,132 @@
+"""The stream: one WebSocket that carries frames out and commands in."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from fastapi import APIRouter, WebSocket
+from pydantic import ValidationError
+from starlette.websockets import WebSocketDisconnect
+
+from .bodies import MESSAGE, AckMessage, ControlsMessage, explain
+from .commands import controls_keyframe, play_emotion
+from .components import Components
+from .errors import Refused, error_body, json_response
+from .protocol import SUBPROTOCOL
+from .sessions import Session
+from .viewers import Viewer
+
+router = APIRouter()
+_PROTOCOL_ERROR = 1002
+_TOO_BIG = 1009
+
+
+@router.websocket("/api/sessions/{session_id}/stream")
+async def stream(socket: WebSocket, session_id: str) -> None:
+    """Send the session's frames and events; take commands."""
+    parts: Components = socket.app.state.parts
+    offered = [name for name in socket.scope["subprotocols"] if "key" not in name]
+    if offered and SUBPROTOCOL not in offered:
+        # The handshake is completed in the client's own version, so that it can read the reason.
+        await socket.accept(subprotocol=offered[0])
+        await socket.close(_PROTOCOL_ERROR, f"this service speaks {SUBPROTOCOL} only")
+        return
+    try:
+        session = await parts.sessions.get(session_id)
+        viewer = parts.sessions.watch(session)
+    except Refused as refused:
+        await socket.send_denial_response(
+            json_response(refused.body(), status=refused.status, headers=refused.headers)
+        )
+        return
+    try:
+        await socket.accept(subprotocol=SUBPROTOCOL if offered else None)
+        view = await parts.sessions.view(session)
+        await _send_event(socket, session.hello(view))
+        await _converse(socket, parts, session, viewer)
+    except (WebSocketDisconnect, Refused):
+        pass  # The viewer left, or the session was closed between two lines above.
+    finally:
+        parts.sessions.leave(session, viewer)
+        parts.metrics.frames_skipped.inc(viewer.skipped)
+
+
+async def _converse(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:
+    """Send and receive side by side until either ends."""
+    tasks = {
+        asyncio.create_task(_send(socket, parts, session, viewer)),
+        asyncio.create_task(_receive(socket, parts, session, viewer)),
+    }
+    try:
+        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+    for task in done:
+        task.result()
+
+
+async def _send(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:
+    metrics = parts.metrics
+    while True:
+        await viewer.wait()
+        for event in viewer.take_events():
+            await _send_event(socket, event)
+        if viewer.ended is not None:
+            await socket.close(*viewer.ended)
+            return
+        if viewer.take_frame(session.frame.tick):
+            data = session.encoded
+            await socket.send_bytes(data)
+            metrics.frames_sent.inc()
+            metrics.frame_bytes.inc(len(data))
+
+
+async def _receive(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:
+    client = str(socket.scope.get("risorius.client", ""))
+    while True:
+        message = await socket.receive()
+        if message["type"] == "websocket.disconnect":
+            return
+        text = message.get("text")
+        if text is None:
+            viewer.offer(_error("invalid_message", "send JSON in text frames"))
+        elif len(text) > parts.settings.max_message_bytes:
+            viewer.end(_TOO_BIG, "the message is too big")
+        elif not parts.rate.allow(client):
+            viewer.offer(_error("too_many_requests", "too many messages; slow down"))
+        else:
+            await _obey(text, parts, session, viewer)
+
+
+async def _obey(text: str, parts: Components, session: Session, viewer: Viewer) -> None:
+    """Do what one message says; whatever is wrong with it is said back."""
+    try:
+        message = MESSAGE.validate_json(text)
+        if isinstance(message, AckMessage):
+            viewer.acknowledge(message.tick)
+            return
+        if isinstance(message, ControlsMessage):
+            keyframe = controls_keyframe(message, replace=message.replace)
+        else:
+            keyframe = play_emotion(message, session.rig).keyframe
+        _, warnings = await parts.sessions.apply(session, keyframe)
+        for warning in warnings:
+            viewer.offer({"type": "warning", "message": warning})
+    except (ValidationError, UnicodeEncodeError) as error:
+        details = error.errors() if isinstance(error, ValidationError) else []
+        viewer.offer(_error("invalid_message", explain(list(details))))
+    except Refused as refused:
+        viewer.offer({"type": "error", **refused.body()})
+
+
+def _error(name: str, message: str) -> Mapping[str, Any]:
+    return {"type": "error", **error_body(name, message)}
+
+
+async def _send_event(socket: WebSocket, event: Mapping[str, Any]) -> None:
+    await socket.send_text(json.dumps(event, allow_nan=False, separators=(",", ":")))

@@ -1,0 +1,77 @@
+"""One socket's slot: the newest frame and a few events wait in it, never a queue of frames."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Mapping
+from typing import Any
+
+_EVENTS_KEPT = 64
+# Frames that a viewer who acknowledges may have unread at once.
+_WINDOW = 2
+
+
+class Viewer:
+    """What waits for one viewer. A slow one misses frames and delays nobody."""
+
+    def __init__(self) -> None:
+        self._news = asyncio.Event()
+        self._events: deque[Mapping[str, Any]] = deque(maxlen=_EVENTS_KEPT)
+        self._frame_waits = True
+        self._acknowledges = False
+        self._unread: deque[int] = deque(maxlen=_WINDOW)
+        self.skipped = 0
+        self.ended: tuple[int, str] | None = None
+        self._news.set()
+
+    def offer_frame(self) -> None:
+        """Tell it that there is a newer frame; an older one that still waits is skipped."""
+        self.skipped += self._frame_waits
+        self._frame_waits = True
+        self._news.set()
+
+    def repeat_frame(self) -> None:
+        """Send the latest frame again, whatever was lost or not acknowledged."""
+        self._unread.clear()
+        self._frame_waits = True
+        self._news.set()
+
+    def offer(self, event: Mapping[str, Any]) -> None:
+        """Leave an event; a state that still waits is replaced by a newer one."""
+        if event["type"] == "state":
+            kept = [waiting for waiting in self._events if waiting["type"] != "state"]
+            self._events = deque(kept, maxlen=_EVENTS_KEPT)
+        self._events.append(event)
+        self._news.set()
+
+    def acknowledge(self, tick: int) -> None:
+        """Note that the viewer has drawn the frame of `tick`."""
+        self._acknowledges = True
+        while self._unread and (tick - self._unread[0]) % 2**32 < 2**31:
+            self._unread.popleft()
+        self._news.set()
+
+    def end(self, code: int, reason: str) -> None:
+        """Have the socket closed."""
+        self.ended = (code, reason)
+        self._news.set()
+
+    async def wait(self) -> None:
+        """Wait until there is something to send."""
+        await self._news.wait()
+        self._news.clear()
+
+    def take_events(self) -> list[Mapping[str, Any]]:
+        """Return the events that wait."""
+        events = list(self._events)
+        self._events.clear()
+        return events
+
+    def take_frame(self, tick: int) -> bool:
+        """Tell whether the frame of `tick` may go out now; it then counts as sent."""
+        if not self._frame_waits or (self._acknowledges and len(self._unread) >= _WINDOW):
+            return False
+        self._frame_waits = False
+        self._unread.append(tick)
+        return True
