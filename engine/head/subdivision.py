@@ -25,6 +25,7 @@ class Level:
         from_coarser: Control points of this level from those of the coarser, sparse.
         parents: Face of the cage that each face descends from, shape (f,).
         mirror: Mirror image of each vertex, shape (v,).
+        face_mirror: Mirror image of each face, shape (f,).
         sharpness: Semi-sharp crease of each edge, 0 is smooth, shape (e,).
     """
 
@@ -32,16 +33,19 @@ class Level:
     from_coarser: sp.csr_array
     parents: IntArray
     mirror: IntArray
+    face_mirror: IntArray
     sharpness: FloatArray
 
 
 def cage_level(topology: Topology, mirror: IntArray, sharpness: FloatArray) -> Level:
-    """Return level 0, the cage itself."""
+    """Return level 0, the cage itself; the second half of its faces mirrors the first."""
+    half = len(topology.faces) // 2
     return Level(
         topology=topology,
         from_coarser=sp.eye_array(topology.vertex_count, format="csr"),
         parents=np.arange(len(topology.faces)),
         mirror=mirror,
+        face_mirror=np.r_[np.arange(half, 2 * half), np.arange(half)],
         sharpness=sharpness,
     )
 
@@ -52,12 +56,12 @@ def refine(level: Level) -> Level:
     faces = _child_faces(coarse)
     size = coarse.vertex_count + len(coarse.edges) + len(coarse.faces)
     fine = Topology.of(faces, size)
-    mirror = _child_mirror(coarse, level.mirror)
     return Level(
         topology=fine,
         from_coarser=subdivision_matrix(coarse, level.sharpness),
         parents=np.repeat(level.parents, coarse.corner_counts),
-        mirror=mirror,
+        mirror=_child_mirror(level),
+        face_mirror=_child_face_mirror(level),
         sharpness=_child_sharpness(coarse, fine, level.sharpness),
     )
 
@@ -145,16 +149,26 @@ def _child_faces(coarse: Topology) -> IntArray:
     )
 
 
-def _child_mirror(coarse: Topology, mirror: IntArray) -> IntArray:
-    """Vertices, edges and faces mirror to their own kind; faces by their place in the halves."""
-    first, second = mirror[coarse.edges[:, 0]], mirror[coarse.edges[:, 1]]
-    edge_mirror = coarse.edge_index(first, second)
-    half = len(coarse.faces) // 2
-    face_mirror = np.r_[np.arange(half, 2 * half), np.arange(half)]
+def _child_mirror(level: Level) -> IntArray:
+    """Return the mirror image of each vertex of the next level: each mirrors to its own kind."""
+    coarse, mirror = level.topology, level.mirror
+    edge_mirror = coarse.edge_index(mirror[coarse.edges[:, 0]], mirror[coarse.edges[:, 1]])
     first_face_point = coarse.vertex_count + len(coarse.edges)
     return np.concatenate(
-        [mirror, coarse.vertex_count + edge_mirror, first_face_point + face_mirror]
+        [mirror, coarse.vertex_count + edge_mirror, first_face_point + level.face_mirror]
     )
+
+
+def _child_face_mirror(level: Level) -> IntArray:
+    """Return the mirror image of each face of the next level.
+
+    A mirrored face has its corners reversed but for the first, and so have its children.
+    """
+    counts = level.topology.corner_counts
+    starts = np.cumsum(counts) - counts
+    parent = np.repeat(np.arange(len(counts)), counts)
+    place = np.arange(counts.sum()) - starts[parent]
+    return np.asarray(starts[level.face_mirror[parent]] + -place % counts[parent])
 
 
 def _child_sharpness(coarse: Topology, fine: Topology, sharpness: FloatArray) -> FloatArray:
