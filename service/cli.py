@@ -1,0 +1,178 @@
+"""The command line: serve, clip, sheet, bench.
+
+Every command ends with 0, or with 2 and one clear sentence.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import structlog
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from .version import version
+
+app = typer.Typer(
+    help="A physically simulated face, driven by FACS.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+_console = Console(stderr=True, highlight=False)
+_REFUSED = 2
+
+
+def main() -> None:
+    """Run the command line."""
+    # Set before numba is imported: it would print to the same place as the answer.
+    structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
+    app()
+
+
+def _refuse(sentence: str) -> NoReturn:
+    _console.print(escape(sentence), style="red", soft_wrap=True)
+    raise typer.Exit(_REFUSED)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"risorius {version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """A physically simulated face, driven by FACS."""
+
+
+@app.command()
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 takes a free one.")] = None,
+    workers: Annotated[int, typer.Option(help="Only 1: sessions live in the process.")] = 1,
+) -> None:
+    """Serve the viewer, the API and the stream."""
+    from pydantic import ValidationError
+
+    from .bodies import explain
+    from .serving import serve_until_stopped
+    from .settings import Settings
+
+    if max(workers, _asked_workers()) > 1:
+        _refuse(
+            "risorius runs as one process, because sessions live in it; start it with one worker."
+        )
+    given = {"host": host, "port": port}
+    try:
+        settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        _refuse(f"A setting is not valid: {explain(list(error.errors()))}.")
+    try:
+        asyncio.run(serve_until_stopped(settings, _console))
+    except KeyboardInterrupt:
+        _console.print("stopped")
+    except OSError as error:
+        if error.errno not in (errno.EADDRINUSE, errno.EADDRNOTAVAIL, errno.EACCES, -2, -5):
+            raise
+        reason = "is in use" if error.errno == errno.EADDRINUSE else "cannot be used"
+        _refuse(
+            f"Port {settings.port} on {settings.host} {reason}; choose another one with --port."
+        )
+
+
+@app.command()
+def clip(
+    source: Annotated[Path, typer.Argument(metavar="IN", help="Timeline, a JSON file.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="GLB file to write.")],
+    rig: Annotated[str | None, typer.Option(help="Rig to play it on.")] = None,
+    fps: Annotated[int | None, typer.Option(min=1, max=60, help="Frames a second.")] = None,
+) -> None:
+    """Render a timeline to an animated GLB file, without a server."""
+    from .rendering import ClipRefused, render_file
+
+    progress = Progress(
+        TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn(), console=_console
+    )
+    try:
+        with progress:
+            task = progress.add_task("reading", total=1.0)
+            report = render_file(
+                source,
+                output,
+                rig=rig,
+                fps=fps,
+                show=lambda stage, share: progress.update(task, description=stage, completed=share),
+            )
+    except ClipRefused as refused:
+        _refuse(str(refused))
+    _console.print(escape(report), soft_wrap=True)
+
+
+@app.command()
+def sheet(
+    output: Annotated[Path, typer.Option("-o", "--output", help="PNG file to write.")],
+    rig: Annotated[str, typer.Option(help="Rig to show.")] = "standard",
+    columns: Annotated[int, typer.Option(min=1, max=20, help="Pictures in a row.")] = 6,
+    size: Annotated[int, typer.Option(min=64, max=1024, help="Side of a picture, pixels.")] = 320,
+    view: Annotated[
+        str, typer.Option(help="Where it is seen from: front, three-quarter or profile.")
+    ] = "three-quarter",
+    only: Annotated[
+        str, typer.Option(help="Names to show, comma separated: AU12,happiness,6C+12D.")
+    ] = "",
+) -> None:
+    """Draw every action unit and emotion, as the viewer shows them, on one picture."""
+    from .sheet import SheetRefused, draw_sheet
+
+    names = tuple(name.strip() for name in only.split(",") if name.strip())
+    progress = Progress(TextColumn("{task.description}"), BarColumn(), console=_console)
+    try:
+        with progress:
+            task = progress.add_task("starting", total=1.0)
+            count = draw_sheet(
+                output,
+                rig=rig,
+                columns=columns,
+                size=size,
+                view=view,
+                only=names,
+                show=lambda stage, share: progress.update(task, description=stage, completed=share),
+            )
+    except SheetRefused as refused:
+        _refuse(str(refused))
+    _console.print(f"{count} pictures in {escape(str(output))}", soft_wrap=True)
+
+
+@app.command()
+def bench(
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Measure the simulation, the clips and the stream on this machine."""
+    from .bench import measure, table
+
+    with _console.status("measuring"):
+        figures = measure()
+    if as_json:
+        typer.echo(json.dumps(figures, indent=2, allow_nan=False))
+    else:
+        Console(highlight=False).print(table(figures))
+
+
+def _asked_workers() -> int:
+    """Return the number of workers that the environment asks servers for."""
+    asked = os.environ.get("WEB_CONCURRENCY", "1")
+    return int(asked) if asked.isdecimal() else 1

@@ -1,0 +1,89 @@
+"""Rendering a timeline file to a GLB file, for the command line."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from engine import EngineError, builtin_rig, clip_to_glb, record
+
+from .bodies import NewClip, explain
+from .commands import clip_timeline, model_of
+from .errors import Refused
+
+Show = Callable[[str, float], None]
+_SIMULATION_SHARE = 0.9
+
+
+class ClipRefused(Exception):
+    """A file that cannot be rendered; the message is one sentence."""
+
+
+def render_file(source: Path, output: Path, *, rig: str | None, fps: int | None, show: Show) -> str:
+    """Render `source` to `output` and return one line about it.
+
+    Args:
+        source: A timeline as `POST /api/clips` takes it.
+        output: GLB file to write.
+        rig: Overrides the file's rig.
+        fps: Overrides the file's frame rate.
+        show: Told what is being done, and the share of the work done.
+
+    Raises:
+        ClipRefused: If the file cannot be read, played or written.
+    """
+    if not output.parent.is_dir():
+        raise ClipRefused(f"The folder {output.parent} does not exist; make it first.")
+    clip = _read(source)
+    clip = clip.model_copy(update={"rig": rig or clip.rig, "fps": fps or clip.fps})
+    started = time.perf_counter()
+    try:
+        show("building the rig", 0.0)
+        chosen = builtin_rig(clip.rig)
+        timeline, warnings = clip_timeline(clip, chosen)
+        rendered = record(
+            chosen,
+            timeline,
+            fps=clip.fps,
+            model=model_of(clip.model, chosen),
+            progress=lambda share: show("simulating", _SIMULATION_SHARE * share),
+        )
+        show("writing", _SIMULATION_SHARE)
+        data = clip_to_glb(rendered)
+        output.write_bytes(data)
+    except (EngineError, Refused) as error:
+        raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
+    except OSError as error:
+        raise ClipRefused(f"{output} cannot be written: {error.strerror}.") from error
+    show("done", 1.0)
+    seconds = time.perf_counter() - started
+    line = (
+        f"{output}: {len(rendered.poses)} frames, {timeline.duration:g} s, "
+        f"{len(data) / 1e6:.1f} MB, in {seconds:.1f} s"
+    )
+    return "\n".join([line, *warnings])
+
+
+def _read(source: Path) -> NewClip:
+    """Read a timeline file.
+
+    Raises:
+        ClipRefused: If it is not one.
+    """
+    if source.suffix.lower() == ".csv":
+        raise ClipRefused("Tracker files (CSV) are not available yet; give a timeline as JSON.")
+    try:
+        data = json.loads(source.read_text(encoding="utf-8"))
+        return NewClip.model_validate(data)
+    except OSError as error:
+        raise ClipRefused(f"{source} cannot be read: {error.strerror}.") from error
+    except ValidationError as error:
+        raise ClipRefused(
+            f"{source} is not a timeline: {explain(list(error.errors()))}."
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise ClipRefused(f"{source} is not a JSON file: {error}.") from error

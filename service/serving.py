@@ -1,0 +1,60 @@
+"""Serving from the command line: what a person sees while it starts."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+
+import uvicorn
+from fastapi import FastAPI
+from rich.console import Console
+
+from .app import create_app
+from .components import Components
+from .server import listen, server_of, url_of
+from .settings import Settings
+
+_LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+async def serve_until_stopped(settings: Settings, console: Console) -> None:
+    """Serve until a signal comes.
+
+    Raises:
+        OSError: If the address cannot be used.
+    """
+    listener = listen(settings.host, settings.port)
+    app = create_app(settings)
+    server = server_of(app, settings)
+    console.print(f"Risorius at {url_of(listener)}", soft_wrap=True)
+    if settings.host not in _LOOPBACK and not settings.api_keys:
+        console.print(
+            "Other machines can reach this address and no key is set: anybody may drive the faces;"
+            " set RISORIUS_API_KEYS.",
+            style="yellow",
+            soft_wrap=True,
+        )
+    announcing = asyncio.create_task(_announce(app, server, console))
+    try:
+        await server.serve(sockets=[listener])
+    finally:
+        announcing.cancel()
+        with suppress(asyncio.CancelledError):
+            await announcing
+        listener.close()
+
+
+async def _announce(app: FastAPI, server: uvicorn.Server, console: Console) -> None:
+    """Say what is being warmed up, until it is ready."""
+    while not server.started:
+        await asyncio.sleep(0.02)
+    parts: Components = app.state.parts
+    said = ""
+    while not parts.ready.is_set():
+        if parts.stage != said:
+            said = parts.stage
+            console.print(f"  {said} …", markup=False)
+        if said.startswith("failed"):
+            return
+        await asyncio.sleep(0.1)
+    console.print("  ready")

@@ -1,0 +1,49 @@
+"""A running application for each test module, on the real engine."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from starlette.testclient import TestClient
+
+from service.app import create_app
+from service.settings import Settings
+
+MakeClient = Callable[..., TestClient]
+LOCAL = "http://localhost"
+
+
+def settings_in(folder: Path, **changes: object) -> Settings:
+    """Return settings that touch nothing outside `folder` but the engine's own cache."""
+    values = {"data_dir": folder / "data", "cache_dir": folder / "cache", **changes}
+    return Settings(**values)  # type: ignore[arg-type]
+
+
+def until(true: Callable[[], bool], *, seconds: float = 30.0) -> None:
+    """Wait until `true` holds."""
+    deadline = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < deadline, "it did not come true in time"
+        time.sleep(0.02)
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A ready application with default limits."""
+    app = create_app(settings_in(tmp_path_factory.mktemp("service")))
+    with TestClient(app, base_url=LOCAL) as running:
+        until(lambda: running.get("/api/ready").status_code == 200, seconds=120)
+        yield running
+
+
+@pytest.fixture
+def session(client: TestClient) -> Iterator[str]:
+    """A fresh session of the standard rig."""
+    answer = client.post("/api/sessions", json={})
+    assert answer.status_code == 201, answer.text
+    session_id = answer.json()["id"]
+    yield session_id
+    client.delete(f"/api/sessions/{session_id}")
