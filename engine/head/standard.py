@@ -12,12 +12,12 @@ from ..cache import cached_arrays
 from ..errors import UnknownName
 from .cage import Cage, build_cage
 from .fairing import faired_points
-from .head import Eye, Head
+from .head import DrawnSurface, Eye, Head
 from .landmarks import landmark_vertices
 from .paint import Paint, painted
 from .parts import head_parts
 from .patches import EYE_CENTER, EYE_RADIUS
-from .skin import LEVELS, DrawnSurface, SkinMesh, drawn_surface, skin_mesh, tissue_as_drawn
+from .skin import LEVELS, SkinMesh, drawn_surface, skin_mesh, tissue_as_drawn
 from .storage import head_from_arrays, head_to_arrays, source_key
 from .subdivision import Limit, cage_level, limit_surface
 from .tissue_surface import TissueSurface, face_sheet, symmetric_triangles, tissue_surface
@@ -86,7 +86,7 @@ def sculpt() -> Sculpture:
     left = Eye(EYE_CENTER.copy(), EYE_RADIUS)
     right = Eye(EYE_CENTER * [-1.0, 1.0, 1.0], EYE_RADIUS)
     finest = limit.positions(points, 2)
-    return Sculpture(cage, points, limit, painted(finest), (left, right))
+    return Sculpture(cage, points, limit, painted(cage, limit, finest), (left, right))
 
 
 def _cached(name: str, build: Callable[[], Head]) -> Head:
@@ -128,6 +128,7 @@ def _assembled(
 ) -> Head:
     cage = sculpture.cage
     sided = cage.sided_names
+    lid_edge = sculpture.points[[cage.left[f"E1_{spoke}"] for spoke in range(16)]]
     return Head(
         name=name,
         points=sculpture.points[tissue.cage_points],
@@ -144,7 +145,7 @@ def _assembled(
         follow=tissue.follow,
         follow_jaw=tissue.follow_jaw,
         drawn=drawn,
-        parts=head_parts(drawn),
+        parts=head_parts(drawn, lid_edge),
         eyes=sculpture.eyes,
         landmarks=landmark_vertices(cage, mesh.indices),
     )

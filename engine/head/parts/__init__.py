@@ -2,12 +2,33 @@
 
 from __future__ import annotations
 
+from ...arrays import FloatArray
 from ..head import DrawnSurface, Part
+from .brows import brow_line, brows_part
+from .ears import ear_parts
+from .eyes import eye_parts
+from .hair import hair_part
+from .lashes import lashes_part
+from .teeth import teeth_parts
+from .tongue import tongue_part
 
 
-def head_parts(skin: DrawnSurface) -> tuple[Part, ...]:
-    """Return every part of the built-in head, fitted to its drawn skin."""
-    return ()
+def head_parts(skin: DrawnSurface, lid_edge: FloatArray) -> tuple[Part, ...]:
+    """Return every part of the built-in head, fitted to its drawn skin.
+
+    Args:
+        skin: The drawn skin.
+        lid_edge: Front edge of the left lids by spoke [mm], shape (16, 3).
+    """
+    return (
+        *eye_parts(),
+        *ear_parts(),
+        *teeth_parts(),
+        tongue_part(),
+        brows_part(skin),
+        lashes_part(skin, lid_edge),
+        *hair_part(skin),
+    )
 
 
-__all__ = ["head_parts"]
+__all__ = ["brow_line", "head_parts"]
