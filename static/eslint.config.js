@@ -4,9 +4,19 @@ import svelte from 'eslint-plugin-svelte';
 import globals from 'globals';
 import ts from 'typescript-eslint';
 
-const THREE = { group: ['three', 'three/*'], message: 'Only the drawing files may import three.js.' };
+const THREE = {
+  group: ['three', 'three/*'],
+  message: 'Only the drawing files may import three.js.',
+};
 const NETWORK = {
-  group: ['**/connection', '**/connection.ts', '**/api', '**/api.ts', '**/protocol', '**/protocol.ts'],
+  group: [
+    '**/connection',
+    '**/connection.ts',
+    '**/api',
+    '**/api.ts',
+    '**/protocol',
+    '**/protocol.ts',
+  ],
   message: 'Drawing files know no network: main.ts hands them plain data.',
 };
 const SOCKETS = {
@@ -18,9 +28,14 @@ const DRAWING = {
   message: 'Only main.ts knows both the drawing and the rest.',
 };
 const MAIN = { group: ['**/main', '**/main.ts'], message: 'main.ts is imported by nobody.' };
-const PANELS = { group: ['svelte', 'svelte/*', '**/panels/*', '**/state/*'], message: 'Below the panels.' };
+const PANELS = {
+  group: ['svelte', 'svelte/*', '**/panels/*', '**/state/*'],
+  message: 'Below the panels.',
+};
 
-const forbid = (...patterns) => ({ 'no-restricted-imports': ['error', { patterns: [...patterns, MAIN] }] });
+const forbid = (...patterns) => ({
+  'no-restricted-imports': ['error', { patterns: [...patterns, MAIN] }],
+});
 
 export default ts.config(
   { ignores: ['node_modules', 'dist', '../service/viewer'] },
@@ -43,7 +58,10 @@ export default ts.config(
     files: ['src/protocol.ts', 'src/connection.ts', 'src/api.ts', 'src/throttle.ts', 'src/url.ts'],
     rules: forbid(THREE, DRAWING, PANELS),
   },
-  { files: ['src/surface.ts', 'src/normals.ts', 'src/strands.ts'], rules: forbid(THREE, NETWORK, PANELS) },
+  {
+    files: ['src/surface.ts', 'src/normals.ts', 'src/strands.ts'],
+    rules: forbid(THREE, NETWORK, PANELS),
+  },
   {
     files: ['src/face.ts', 'src/scene.ts', 'src/materials.ts', 'src/lights.ts', 'src/overlays.ts'],
     rules: forbid(NETWORK, PANELS),

@@ -15,7 +15,8 @@ export interface ActionUnitInfo {
   name: string;
   title?: string;
   region?: string;
-  recipe?: unknown;
+  /** Weight of each muscle. */
+  muscles?: unknown;
   source?: string;
 }
 
@@ -33,6 +34,8 @@ export interface RigInfo {
   emotions: EmotionInfo[];
   tissue: Tissue;
   mesh: Record<string, unknown>;
+  /** Lowest and highest value of each pose axis, e.g. limits.jaw.pitch. */
+  limits: Record<string, Record<string, [number, number]>>;
 }
 
 export interface SessionInfo {
@@ -57,7 +60,7 @@ export class Api {
 
   rig(rig: string): Promise<RigInfo> {
     return this.json('GET', `api/rigs/${encodeURIComponent(rig)}`).then((body) =>
-      completeRig(rig, body as Partial<RigInfo>),
+      completeRig(rig, body as RigAnswer),
     );
   }
 
@@ -77,7 +80,11 @@ export class Api {
     return this.json('PATCH', `api/sessions/${id}/tissue`, tissue) as Promise<{ rig?: string }>;
   }
 
-  patchMuscle(id: string, muscle: string, fields: Record<string, number>): Promise<{ rig?: string }> {
+  patchMuscle(
+    id: string,
+    muscle: string,
+    fields: Record<string, number>,
+  ): Promise<{ rig?: string }> {
     const path = `api/sessions/${id}/muscles/${encodeURIComponent(muscle)}`;
     return this.json('PATCH', path, fields) as Promise<{ rig?: string }>;
   }
@@ -115,8 +122,11 @@ function errorText(answer: unknown, status: number): string {
   return typeof message === 'string' ? message : `The service answered ${status}.`;
 }
 
+type AxisLimits = Record<string, [number, number]>;
+type RigAnswer = Partial<RigInfo> & Partial<Record<'jaw' | 'gaze' | 'head', AxisLimits>>;
+
 /** Older and newer services may leave fields out; the panels then show less, and nothing fails. */
-function completeRig(asked: string, body: Partial<RigInfo>): RigInfo {
+function completeRig(asked: string, body: RigAnswer): RigInfo {
   return {
     id: body.id ?? asked,
     name: body.name ?? asked,
@@ -125,6 +135,7 @@ function completeRig(asked: string, body: Partial<RigInfo>): RigInfo {
     emotions: named<EmotionInfo>(body.emotions),
     tissue: body.tissue ?? {},
     mesh: body.mesh ?? {},
+    limits: { jaw: body.jaw ?? {}, gaze: body.gaze ?? {}, head: body.head ?? {} },
   };
 }
 

@@ -1,6 +1,6 @@
 // Keeps one WebSocket to a face alive: finds it, reconnects with growing pauses, hands on the newest frame.
 
-import type { Hello, StateMessage, SurfaceFrame, ErrorMessage } from './protocol';
+import type { Hello, StateMessage, SurfaceFrame, ErrorMessage, WarningMessage } from './protocol';
 import { ackCommand, decodeFrame, readMessage, SUBPROTOCOL } from './protocol';
 
 export type Status = 'connecting' | 'open' | 'waiting' | 'closed';
@@ -21,7 +21,8 @@ export interface ConnectionOptions {
   locate: () => Promise<string>;
   onHello: (hello: Hello) => void;
   onState: (state: StateMessage) => void;
-  onError: (error: ErrorMessage) => void;
+  /** Something was refused, or obeyed only in part. */
+  onTrouble: (trouble: ErrorMessage | WarningMessage) => void;
   onStatus: (status: Status, detail: string) => void;
   /** A newer frame lies ready for `takeFrame`. */
   onFrameReady: () => void;
@@ -117,14 +118,18 @@ export class Connection {
     const message = readMessage(data);
     if (message.type === 'hello' || message.type === 'rig') this.options.onHello(message);
     else if (message.type === 'state') this.options.onState(message);
-    else if (message.type === 'error') this.options.onError(message);
+    else if (message.type === 'error' || message.type === 'warning')
+      this.options.onTrouble(message);
   }
 
   private lost(event: CloseEvent): void {
     this.socket = null;
     this.newest = null;
     if (event.code === CLOSE_PROTOCOL_ERROR) {
-      this.options.onStatus('closed', event.reason || 'The service speaks another version. Reload the page.');
+      this.options.onStatus(
+        'closed',
+        event.reason || 'The service speaks another version. Reload the page.',
+      );
       return;
     }
     if (this.openedAt > 0 && Date.now() - this.openedAt >= STEADY_MS) this.failures = 0;

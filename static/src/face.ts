@@ -1,7 +1,21 @@
 // The face as three.js draws it: surface.glb in, poses of the tissue surface applied.
 
-import type { BufferAttribute, InterleavedBufferAttribute, Object3D , BufferGeometry, Group} from 'three';
-import { DynamicDrawUsage, Euler, Float32BufferAttribute, Mesh, Quaternion, Vector3 } from 'three';
+import type {
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  InterleavedBufferAttribute,
+  Object3D,
+} from 'three';
+import {
+  DynamicDrawUsage,
+  Euler,
+  Float32BufferAttribute,
+  MathUtils,
+  Mesh,
+  Quaternion,
+  Vector3,
+} from 'three';
 import type { GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { createMaterial } from './materials';
@@ -29,8 +43,15 @@ export type Triple = [number, number, number];
 
 interface SkinExtras {
   map: { indptr: number; indices: number; weights: number; columns: number };
-  lids?: { vertices: number; eyes: number; clearance: number };
-  eyes?: { center: Triple; radius: number; bulge: number; bulge_radius: number; ball_radius_drawn: number }[];
+  lids?: { vertices: number; eyes: number; clearance: number } | null;
+  eyes?: {
+    center: Triple;
+    radius: number;
+    bulge: number;
+    bulge_radius: number;
+    bulge_power?: number;
+    ball_radius_drawn: number;
+  }[];
   landmarks?: Record<string, number>;
   names?: string[];
 }
@@ -42,6 +63,11 @@ interface RidingStrands {
 
 const MILLIMETRES = 1000;
 const DEFAULT_GRID = 2e-5;
+/** Everything wet below this height is in the mouth; light fades between lips and throat [m, head frame]. */
+const MOUTH_TOP = -0.04;
+const LIPS = 0.098;
+const THROAT = 0.06;
+const DARKEST = 0.16;
 const RADIANS = Math.PI / 180;
 
 export class Face {
@@ -71,17 +97,30 @@ export class Face {
     const skin = meshes(gltf.scene).find((mesh) => mesh.userData.role === 'skin');
     const extras = skin?.userData as Partial<SkinExtras> | undefined;
     if (skin === undefined || extras?.map === undefined) {
-      throw new Error('The surface file has no mesh with role "skin" and a map; the service is of another version.');
+      throw new Error(
+        'The surface file has no mesh with role "skin" and a map; the service is of another version.',
+      );
     }
     const read = async (accessor: number): Promise<never> =>
-      plainArray((await gltf.parser.getDependency('accessor', accessor)) as BufferAttribute) as never;
+      plainArray(
+        (await gltf.parser.getDependency('accessor', accessor)) as BufferAttribute,
+      ) as never;
     const { map, lids } = extras;
     const surface = new DrawnSurface(
       plainArray(skin.geometry.getAttribute('position')) as Float32Array,
-      { indptr: await read(map.indptr), indices: await read(map.indices), weights: await read(map.weights), columns: map.columns },
-      lids === undefined
+      {
+        indptr: await read(map.indptr),
+        indices: await read(map.indices),
+        weights: await read(map.weights),
+        columns: map.columns,
+      },
+      lids === undefined || lids === null
         ? { vertices: new Uint16Array(), eyes: new Uint16Array(), clearance: new Float32Array() }
-        : { vertices: await read(lids.vertices), eyes: await read(lids.eyes), clearance: await read(lids.clearance) },
+        : {
+            vertices: await read(lids.vertices),
+            eyes: await read(lids.eyes),
+            clearance: await read(lids.clearance),
+          },
       (extras.eyes ?? []).map(eyeball),
     );
     const roots = new Map<Mesh, ArrayLike<number>>();
@@ -92,7 +131,12 @@ export class Face {
     return new Face(gltf, skin, surface, roots);
   }
 
-  private constructor(gltf: GLTF, skin: Mesh, surface: DrawnSurface, roots: Map<Mesh, ArrayLike<number>>) {
+  private constructor(
+    gltf: GLTF,
+    skin: Mesh,
+    surface: DrawnSurface,
+    roots: Map<Mesh, ArrayLike<number>>,
+  ) {
     this.root = gltf.scene;
     this.surface = surface;
     this.grid = (gltf.asset.extras as { grid?: number } | undefined)?.grid ?? DEFAULT_GRID;
@@ -100,7 +144,9 @@ export class Face {
     this.landmarks = extras.landmarks ?? {};
     const tissue = meshes(this.root).find((mesh) => mesh.userData.role === 'tissue');
     this.tissueRest =
-      tissue === undefined ? new Float32Array() : (plainArray(tissue.geometry.getAttribute('position')) as Float32Array);
+      tissue === undefined
+        ? new Float32Array()
+        : (plainArray(tissue.geometry.getAttribute('position')) as Float32Array);
     this.names = (tissue?.userData as Partial<SkinExtras> | undefined)?.names ?? extras.names ?? [];
     this.root.traverse((node) => this.nodes.set(nodeName(node), node));
     this.jawRest = this.nodes.get('jaw')?.position.clone() ?? new Vector3();
@@ -112,10 +158,17 @@ export class Face {
       surface.rest,
       plainArray(skin.geometry.getAttribute('normal')) as Float32Array,
     );
-    const restSkin = { positions: surface.rest, normals: this.normals.normals };
+    const restSkin = { positions: surface.rest, normals: this.normals.geometric };
     for (const [mesh, ridden] of roots) {
-      const strands = new Strands(plainArray(mesh.geometry.getAttribute('position')) as Float32Array, ridden, restSkin);
-      this.strands.push({ strands, attribute: dynamic(mesh.geometry, 'position', strands.positions) });
+      const strands = new Strands(
+        plainArray(mesh.geometry.getAttribute('position')) as Float32Array,
+        ridden,
+        restSkin,
+      );
+      this.strands.push({
+        strands,
+        attribute: dynamic(mesh.geometry, 'position', strands.positions),
+      });
     }
     this.normals.update(surface.positions, surface.dirty);
     dress(this.root, surface.rest);
@@ -137,22 +190,31 @@ export class Face {
     this.turn('eye.L', rotation(pose.gaze[0], pose.gaze[1], 0));
     this.turn('eye.R', rotation(pose.gaze[2], pose.gaze[3], 0));
     this.turn('jaw', new Quaternion(...pose.jawQuaternion));
-    this.nodes.get('jaw')?.position.set(...pose.jawOffset).add(this.jawRest);
+    this.nodes
+      .get('jaw')
+      ?.position.set(...pose.jawOffset)
+      .add(this.jawRest);
   }
 
   /** A streamed point, by name or index, where it is drawn [mm, head frame]. */
   point(which: string | number): Triple {
     const index = typeof which === 'number' ? which : this.names.indexOf(which);
-    if (!(index >= 0 && index * 3 < this.tissueRest.length)) throw new Error(`There is no surface point "${which}".`);
+    if (!(index >= 0 && index * 3 < this.tissueRest.length))
+      throw new Error(`There is no surface point "${which}".`);
     const displacement = this.surface.displacement(index);
-    return displacement.map((u, axis) => (this.origin('tissue', axis) + this.tissueRest[index * 3 + axis]! + u) * MILLIMETRES) as Triple;
+    return displacement.map(
+      (u, axis) =>
+        (this.origin('tissue', axis) + this.tissueRest[index * 3 + axis]! + u) * MILLIMETRES,
+    ) as Triple;
   }
 
   /** A vertex as it lies in the buffer that is drawn [mm, head frame]. */
   drawnVertex(index: number): Triple {
-    if (!(index >= 0 && index < this.skinPosition.count)) throw new Error(`There is no drawn vertex ${index}.`);
+    if (!(index >= 0 && index < this.skinPosition.count))
+      throw new Error(`There is no drawn vertex ${index}.`);
     return [0, 1, 2].map(
-      (axis) => (this.origin('skin', axis) + this.skinPosition.array[index * 3 + axis]!) * MILLIMETRES,
+      (axis) =>
+        (this.origin('skin', axis) + this.skinPosition.array[index * 3 + axis]!) * MILLIMETRES,
     ) as Triple;
   }
 
@@ -167,7 +229,11 @@ export class Face {
   /** Where a node's own origin lies in the head's frame at rest [m]. */
   private origin(name: string, axis: number): number {
     let sum = 0;
-    for (let node = this.nodes.get(name); node !== undefined && node !== this.root; node = node.parent ?? undefined) {
+    for (
+      let node = this.nodes.get(name);
+      node !== undefined && node !== this.root;
+      node = node.parent ?? undefined
+    ) {
       sum += node.position.getComponent(axis);
     }
     return sum;
@@ -178,7 +244,7 @@ export class Face {
     this.skinPosition.needsUpdate = true;
     this.skinNormal.needsUpdate = true;
     for (const { strands, attribute } of this.strands) {
-      strands.update({ positions: this.surface.positions, normals: this.normals.normals });
+      strands.update({ positions: this.surface.positions, normals: this.normals.geometric });
       attribute.needsUpdate = true;
     }
   }
@@ -190,11 +256,19 @@ export class Face {
 
 /** Yaw to the face's left, pitch up, roll to the left shoulder, in degrees. */
 function rotation(yaw: number, pitch: number, roll: number): Quaternion {
-  return new Quaternion().setFromEuler(new Euler(-pitch * RADIANS, yaw * RADIANS, -roll * RADIANS, 'YXZ'));
+  return new Quaternion().setFromEuler(
+    new Euler(-pitch * RADIANS, yaw * RADIANS, -roll * RADIANS, 'YXZ'),
+  );
 }
 
 function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
-  return { center: eye.center, radius: eye.ball_radius_drawn, bulge: eye.bulge, bulgeRadius: eye.bulge_radius };
+  return {
+    center: eye.center,
+    radius: eye.ball_radius_drawn,
+    bulge: eye.bulge,
+    bulgeRadius: eye.bulge_radius,
+    bulgePower: eye.bulge_power ?? 1.2,
+  };
 }
 
 /** Give every mesh its material, its shadow and its place in the drawing order. */
@@ -203,15 +277,35 @@ function dress(root: Object3D, skinRest: Float32Array): void {
   for (const mesh of meshes(root)) {
     const kind = (mesh.userData.material as string | undefined) ?? 'skin';
     mesh.visible = mesh.userData.role !== 'tissue';
-    mesh.material = createMaterial(kind, mesh.geometry.hasAttribute('color'), hasNeck && mesh.userData.role === 'skin');
+    mesh.material = createMaterial(
+      kind,
+      mesh.geometry.hasAttribute('color'),
+      hasNeck && mesh.userData.role === 'skin',
+    );
     mesh.castShadow = kind !== 'cornea';
     mesh.receiveShadow = kind !== 'cornea';
     mesh.frustumCulled = false;
     // The skin is blended at the neck, so it must come after what is opaque and before the corneas.
     mesh.renderOrder = kind === 'cornea' ? 2 : mesh.userData.role === 'skin' ? 1 : 0;
+    if (kind === 'wet' || kind === 'teeth') darkenMouth(mesh, root);
     if (kind === 'skin') {
       mesh.geometry.setAttribute('restPosition', mesh.geometry.getAttribute('position').clone());
     }
+  }
+}
+
+/** Light hardly reaches into the mouth, and a shadow map alone does not show it: darker towards the throat. */
+function darkenMouth(mesh: Mesh<BufferGeometry>, root: Object3D): void {
+  const positions = mesh.geometry.getAttribute('position');
+  const colors = mesh.geometry.getAttribute('color') as BufferAttribute | undefined;
+  if (colors === undefined) return;
+  const at = new Vector3();
+  root.updateMatrixWorld(true);
+  for (let i = 0; i < positions.count; i++) {
+    at.fromBufferAttribute(positions, i).applyMatrix4(mesh.matrixWorld);
+    if (at.y > MOUTH_TOP) continue;
+    const light = MathUtils.lerp(DARKEST, 1, MathUtils.smoothstep(at.z, THROAT, LIPS));
+    colors.setXYZ(i, colors.getX(i) * light, colors.getY(i) * light, colors.getZ(i) * light);
   }
 }
 

@@ -1,13 +1,26 @@
 // The studio: key, fill and rim lights with a soft shadow, and the soft boxes that skin and eyes mirror.
 
 import type { Texture, WebGLRenderer } from 'three';
-import { Color, DirectionalLight, DoubleSide, Group, HemisphereLight, Mesh, MeshBasicMaterial, PlaneGeometry, PMREMGenerator, Scene, ShaderMaterial } from 'three';
+import {
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  Group,
+  HemisphereLight,
+  Mesh,
+  MeshBasicMaterial,
+  PlaneGeometry,
+  PMREMGenerator,
+  Scene,
+  ShaderMaterial,
+} from 'three';
 
 const SHADOW_MAP_SIZE = 2048;
 
+/** Lights for a camera in front of the face; turn the group with the camera, so that every view is well lit. */
 export function createLights(): Group {
   const lights = new Group();
-  const key = new DirectionalLight(0xfff0e0, 2.5);
+  const key = new DirectionalLight(0xfff3e6, 2.5);
   key.position.set(-0.22, 0.24, 0.36);
   castSoftShadow(key);
   const fill = new DirectionalLight(0xcad8ff, 0.62);
@@ -16,7 +29,14 @@ export function createLights(): Group {
   rimLeft.position.set(0.3, 0.2, -0.26);
   const rimRight = new DirectionalLight(0xffe2c4, 0.7);
   rimRight.position.set(-0.34, 0.12, -0.22);
-  lights.add(key, key.target, fill, rimLeft, rimRight, new HemisphereLight(0xdfe8ff, 0x6b4436, 0.6));
+  lights.add(
+    key,
+    key.target,
+    fill,
+    rimLeft,
+    rimRight,
+    new HemisphereLight(0xdfe8ff, 0x6b4436, 0.6),
+  );
   return lights;
 }
 
@@ -47,7 +67,11 @@ export function createEnvironment(renderer: WebGLRenderer): Texture {
   return environment;
 }
 
-function softBox(position: [number, number, number], size: [number, number], radiance: number): Mesh {
+function softBox(
+  position: [number, number, number],
+  size: [number, number],
+  radiance: number,
+): Mesh {
   const box = new Mesh(
     new PlaneGeometry(...size),
     new MeshBasicMaterial({ color: new Color(radiance, radiance, radiance), side: DoubleSide }),

@@ -9,9 +9,9 @@ import { Face } from './face';
 import Panels from './panels/Panels.svelte';
 import StatusBar from './panels/StatusBar.svelte';
 import type { FaceState, Hello, Layer } from './protocol';
-import { controlsCommand, emotionCommand, LAYERS, releaseCommand } from './protocol';
+import { controlsCommand, emotionCommand, LAYERS, replaceCommand } from './protocol';
 import { Scene } from './scene';
-import type { Actions } from './state/actions';
+import type { Actions, Group } from './state/actions';
 import { describeRig, tissuePatch } from './state/rig';
 import { ViewerState } from './state/viewer.svelte';
 import './style.css';
@@ -50,6 +50,7 @@ declare global {
 const page = readPageOptions(window.location.search);
 const api = new Api(document.baseURI);
 const viewer = new ViewerState();
+const { sliders } = viewer;
 const rate = new TickRate();
 viewer.rigName = page.rig;
 viewer.view = page.view;
@@ -76,7 +77,7 @@ const connection = new Connection({
   onState: (message) => {
     takeState(message.state ?? message);
   },
-  onError: (error) => (viewer.notice = error.message),
+  onTrouble: (trouble) => (viewer.notice = trouble.message),
   onStatus: (status, detail) => {
     viewer.status = status;
     viewer.detail = detail;
@@ -156,7 +157,10 @@ async function showRig(id: string, isNew: boolean): Promise<void> {
 function takeState(state: FaceState): void {
   viewer.merged = state.merged ?? {};
   if (performance.now() - touchedAt < HANDS_OFF_MS) return;
-  viewer.sliders.take(state.layers?.puppet ?? {});
+  sliders.take(state.layers?.puppet ?? {});
+  const emotion = state.layers?.emotion?.emotion;
+  viewer.emotion = emotion?.label ?? '';
+  if (emotion !== undefined) viewer.emotionIntensity = emotion.intensity;
 }
 
 function applyNewestFrame(): void {
@@ -174,14 +178,33 @@ function applyNewestFrame(): void {
   viewer.tickRate = rate.at(frame.tick, performance.now());
 }
 
-function touch(group: string, name: string, value: number, shown: Record<string, number>): void {
-  touchedAt = performance.now();
-  shown[name] = value;
+/** Hold a unit either as a whole or by its sides, never both: AU12 beside L12 would say two things of the left. */
+function settleSides(name: string): void {
+  const values = sliders.action_units;
+  const number = name.replace(/^(AU|L|R)/, '');
+  const [whole, left, right] = [`AU${number}`, `L${number}`, `R${number}`];
+  if (name === whole) {
+    for (const side of [left, right]) if (side in values) drop('action_units', side);
+  } else if (whole in values) {
+    const held = values[whole]!;
+    drop('action_units', whole);
+    for (const side of [left, right]) hold('action_units', side, held);
+  }
+}
+
+function hold(group: Group, name: string, value: number): void {
+  sliders[group][name] = value;
   throttle.set(group, name, value);
 }
 
+/** Zero lets go of units and muscles. */
+function drop(group: Group, name: string): void {
+  Reflect.deleteProperty(sliders[group], name);
+  throttle.set(group, name, 0);
+}
+
 function release(layer: Layer): void {
-  connection.send(releaseCommand(layer, RELEASE_FADE_SECONDS));
+  connection.send(replaceCommand({ layer, fade: RELEASE_FADE_SECONDS }));
 }
 
 /** One debounced edit per thing edited, so that two sliders moved in turn both arrive. */
@@ -202,36 +225,29 @@ function edit(key: string, value: number, send: () => Promise<unknown>): void {
   flushEdits();
 }
 
-const { sliders } = viewer;
 const actions: Actions = {
-  setActionUnit(name, value) {
-    if (name.startsWith('AU')) {
-      // Both sides at once: what was held of one side would otherwise stay beside it.
-      for (const side of ['L', 'R']) {
-        const one = side + name.slice(2);
-        if (one in sliders.actionUnits) touch('action_units', one, value, sliders.actionUnits);
-      }
-    }
-    touch('action_units', name, value, sliders.actionUnits);
+  set(group, name, value) {
+    touchedAt = performance.now();
+    if (group === 'action_units') settleSides(name);
+    hold(group, name, value);
   },
-  setMuscle: (name, activation) => {
-    touch('muscles', name, activation, sliders.muscles);
-  },
-  setJaw: (axis, degrees) => {
-    touch('jaw', axis, degrees, sliders.jaw);
-  },
-  setGaze: (axis, degrees) => {
-    touch('gaze', axis, degrees, sliders.gaze);
-  },
-  setHead: (axis, degrees) => {
-    touch('head', axis, degrees, sliders.head);
+  letGo(group, name) {
+    touchedAt = performance.now();
+    if (group === 'action_units') settleSides(name);
+    Reflect.deleteProperty(sliders[group], name);
+    throttle.clear();
+    connection.send(
+      replaceCommand({ layer: 'puppet', fade: RELEASE_FADE_SECONDS, ...sliders.all() }),
+    );
   },
   playEmotion(label, intensity) {
     const fade = label === viewer.emotion ? 0 : EMOTION_FADE_SECONDS;
+    touchedAt = performance.now();
     viewer.emotion = label;
     connection.send(emotionCommand(label, intensity, fade));
   },
   stopEmotion() {
+    touchedAt = performance.now();
     viewer.emotion = '';
     release('emotion');
   },
@@ -256,9 +272,11 @@ const actions: Actions = {
     scene.setView(view);
   },
   reset() {
+    touchedAt = performance.now();
     throttle.clear();
     sliders.take({});
     viewer.emotion = '';
+    viewer.notice = '';
     for (const layer of LAYERS) release(layer);
     scene.setView(viewer.view);
   },
@@ -307,6 +325,9 @@ function shownFace(): Face {
 
 if (!page.bare) {
   mount(StatusBar, { target: element('bar'), props: { viewer, actions } });
-  mount(Panels, { target: element('panels'), props: { viewer, actions, link: (path: string) => api.address(path) } });
+  mount(Panels, {
+    target: element('panels'),
+    props: { viewer, actions, link: (path: string) => api.address(path) },
+  });
 }
 connection.connect();

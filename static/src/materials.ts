@@ -1,7 +1,14 @@
 // How each kind of surface takes light: skin, eyes, wet mucosa, teeth, hair.
 
 import type { Material } from 'three';
-import { AdditiveBlending, Color, DoubleSide, MeshPhysicalMaterial, MeshStandardMaterial, Vector2 } from 'three';
+import {
+  AdditiveBlending,
+  Color,
+  DoubleSide,
+  MeshPhysicalMaterial,
+  MeshStandardMaterial,
+  Vector2,
+} from 'three';
 import { makeSkin } from './skin-shader';
 
 /** The neck dissolves into the background between these heights [mm], where the mesh is cut. */
@@ -12,15 +19,38 @@ const NO_FADE = new Vector2(-2000, -1999);
 export function createMaterial(kind: string, vertexColors: boolean, hasNeck: boolean): Material {
   switch (kind) {
     case 'eye':
-      return new MeshPhysicalMaterial({ vertexColors, roughness: 0.22, specularIntensity: 0.5, clearcoat: 0.5, clearcoatRoughness: 0.06, envMapIntensity: 0.9 });
+      return new MeshPhysicalMaterial({
+        vertexColors,
+        roughness: 0.22,
+        specularIntensity: 0.5,
+        clearcoat: 0.5,
+        clearcoatRoughness: 0.06,
+        envMapIntensity: 0.9,
+      });
     case 'cornea':
       return cornea();
     case 'wet':
-      return new MeshPhysicalMaterial({ vertexColors, roughness: 0.3, clearcoat: 0.55, clearcoatRoughness: 0.22 });
+      return new MeshPhysicalMaterial({
+        vertexColors,
+        roughness: 0.3,
+        clearcoat: 0.55,
+        clearcoatRoughness: 0.22,
+      });
     case 'teeth':
-      return new MeshPhysicalMaterial({ vertexColors, roughness: 0.28, clearcoat: 0.35, clearcoatRoughness: 0.15, envMapIntensity: 0.8 });
+      return new MeshPhysicalMaterial({
+        vertexColors,
+        roughness: 0.28,
+        clearcoat: 0.35,
+        clearcoatRoughness: 0.15,
+        envMapIntensity: 0.8,
+      });
     case 'hair':
-      return new MeshStandardMaterial({ vertexColors, color: vertexColors ? 0xffffff : 0x2a1a12, roughness: 0.75, side: DoubleSide });
+      return new MeshStandardMaterial({
+        vertexColors,
+        color: vertexColors ? 0xffffff : 0x2a1a12,
+        roughness: 0.75,
+        side: DoubleSide,
+      });
     default:
       return skin(vertexColors, hasNeck);
   }

@@ -7,8 +7,10 @@ interface Fans {
 }
 
 export class MovingNormals {
-  /** Current normals, x y z after x y z. */
+  /** Normals to draw with, x y z after x y z: at rest the authored ones. */
   readonly normals: Float32Array;
+  /** Area-weighted unit normals of the triangles, which strands turn with. */
+  readonly geometric: Float32Array;
   private readonly fans: Fans;
   /** Area-weighted normal of each triangle. */
   private readonly faces: Float32Array;
@@ -28,9 +30,10 @@ export class MovingNormals {
     this.dirtyTriangle = new Uint8Array(index.length / 3).fill(1);
     this.dirtyVertex = new Uint8Array(vertices).fill(1);
     this.normals = new Float32Array(rest.length);
+    this.geometric = new Float32Array(rest.length);
     this.authored = new Float32Array(rest.length);
     this.refresh(rest);
-    for (let i = 0; i < rest.length; i++) this.authored[i] = restNormals[i]! - this.normals[i]!;
+    for (let i = 0; i < rest.length; i++) this.authored[i] = restNormals[i]! - this.geometric[i]!;
     this.normals.set(restNormals);
   }
 
@@ -94,9 +97,12 @@ export class MovingNormals {
     }
     const at = vertex * 3;
     const scale = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
-    x = x * scale + this.authored[at]!;
-    y = y * scale + this.authored[at + 1]!;
-    z = z * scale + this.authored[at + 2]!;
+    x = this.geometric[at] = x * scale;
+    y = this.geometric[at + 1] = y * scale;
+    z = this.geometric[at + 2] = z * scale;
+    x += this.authored[at]!;
+    y += this.authored[at + 1]!;
+    z += this.authored[at + 2]!;
     const unit = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
     this.normals[at] = x * unit;
     this.normals[at + 1] = y * unit;

@@ -126,7 +126,7 @@ export interface Held {
   jaw?: Numbers;
   gaze?: Numbers;
   head?: Numbers;
-  emotion?: unknown;
+  emotion?: { label: string; intensity: number };
 }
 
 export interface FaceState {
@@ -159,11 +159,17 @@ export interface ErrorMessage {
   message: string;
 }
 
+/** A command was obeyed, but not in every point. */
+export interface WarningMessage {
+  type: 'warning';
+  message: string;
+}
+
 export interface OtherMessage {
   type: 'other';
 }
 
-export type ServerMessage = Hello | StateMessage | ErrorMessage | OtherMessage;
+export type ServerMessage = Hello | StateMessage | ErrorMessage | WarningMessage | OtherMessage;
 
 /** Read a text frame; a type that this viewer does not know becomes `other`, and is left alone. */
 export function readMessage(text: string): ServerMessage {
@@ -173,6 +179,7 @@ export function readMessage(text: string): ServerMessage {
     case 'rig':
     case 'state':
     case 'error':
+    case 'warning':
       return message as ServerMessage;
     default:
       return { type: 'other' };
@@ -195,9 +202,9 @@ export function controlsCommand(controls: Controls): string {
   return JSON.stringify({ type: 'controls', ...controls });
 }
 
-/** Let go of everything that a layer holds, as an empty PUT does. */
-export function releaseCommand(layer: Layer, fade: number): string {
-  return JSON.stringify({ type: 'controls', layer, replace: true, fade });
+/** Let a layer hold this and nothing else, as PUT does; without any values it lets go of everything. */
+export function replaceCommand(controls: Controls): string {
+  return JSON.stringify({ type: 'controls', replace: true, ...controls });
 }
 
 export function emotionCommand(label: string, intensity: number, fadeIn: number): string {

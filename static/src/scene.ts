@@ -1,9 +1,21 @@
 // The stage: renderer, camera and views; draws only when something has changed.
 
 import type { Object3D } from 'three';
-import { ACESFilmicToneMapping, PCFShadowMap, PerspectiveCamera, Scene as ThreeScene, Vector3, WebGLRenderer } from 'three';
+import {
+  ACESFilmicToneMapping,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Scene as ThreeScene,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { createBackdrop, createEnvironment, createLights } from './lights';
+
+/** Share of the camera's way around the face that the lights go with it. */
+const LIGHTS_FOLLOW = 0.8;
+/** Height of the bar over the stage, whose half the head makes room for [CSS px]. */
+const BAR_HEIGHT = 40;
 
 /** Degrees that the camera stands to the face's left of straight in front. */
 const VIEW_ANGLES: Record<string, number> = { front: 0, 'three-quarter': 35, profile: 90 };
@@ -31,6 +43,7 @@ export class Scene {
   private readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.05, 5);
   private readonly controls: OrbitControls | null;
   private readonly observer: ResizeObserver;
+  private readonly lights = createLights();
   private view: string;
   /** The camera stands where a view put it, so that resizing may frame it anew. */
   private framed = true;
@@ -42,13 +55,17 @@ export class Scene {
     private readonly options: SceneOptions,
   ) {
     this.view = options.view;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    this.renderer = new WebGLRenderer({
+      canvas,
+      antialias: true,
+      powerPreference: 'high-performance',
+    });
     this.renderer.toneMapping = ACESFilmicToneMapping;
     this.renderer.toneMappingExposure = 1.0;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.setPixelRatio(options.pixelRatio ?? Math.min(window.devicePixelRatio, 2));
-    this.scene.add(createBackdrop(), createLights());
+    this.scene.add(createBackdrop(), this.lights);
     this.scene.environment = createEnvironment(this.renderer);
     this.scene.environmentIntensity = 0.4;
     this.controls = options.orbit ? this.createControls() : null;
@@ -69,7 +86,9 @@ export class Scene {
 
   setView(name: string): void {
     if (!(name in VIEW_ANGLES)) {
-      throw new Error(`There is no view "${name}"; known are ${Object.keys(VIEW_ANGLES).join(', ')}.`);
+      throw new Error(
+        `There is no view "${name}"; known are ${Object.keys(VIEW_ANGLES).join(', ')}.`,
+      );
     }
     this.view = name;
     this.frame();
@@ -96,11 +115,19 @@ export class Scene {
 
   private draw(): void {
     this.options.beforeDraw();
+    this.turnLights();
     this.renderer.render(this.scene, this.camera);
     this.framesDrawn++;
     const waiting = this.waiting;
     this.waiting = [];
     for (const resolve of waiting) resolve();
+  }
+
+  private turnLights(): void {
+    const from = this.camera.position;
+    const angle = Math.atan2(from.x - TARGET.x, from.z - TARGET.z) * LIGHTS_FOLLOW;
+    this.lights.rotation.y = angle;
+    this.scene.environmentRotation.y = angle;
   }
 
   private createControls(): OrbitControls {
@@ -126,6 +153,16 @@ export class Scene {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
+    if (this.options.orbit) {
+      this.camera.setViewOffset(
+        clientWidth,
+        clientHeight,
+        0,
+        -BAR_HEIGHT / 2,
+        clientWidth,
+        clientHeight,
+      );
+    }
     this.camera.updateProjectionMatrix();
     if (this.framed) this.frame();
     this.invalidate();
@@ -137,7 +174,11 @@ export class Scene {
     const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const distance = Math.max(HALF_HEIGHT / slope, HALF_WIDTH / (slope * this.camera.aspect));
     this.camera.position
-      .set(Math.sin(angle) * Math.cos(ELEVATION), Math.sin(ELEVATION), Math.cos(angle) * Math.cos(ELEVATION))
+      .set(
+        Math.sin(angle) * Math.cos(ELEVATION),
+        Math.sin(ELEVATION),
+        Math.cos(angle) * Math.cos(ELEVATION),
+      )
       .multiplyScalar(distance)
       .add(TARGET);
     this.camera.lookAt(TARGET);

@@ -27,7 +27,7 @@ float stubble(vec3 p) { return noise(p * vec3(3.1, 1.3, 1.3)) * 0.6 + noise(p * 
 
 /** Red light travels farthest in skin: it reaches around the terminator and into the edge of a shadow. */
 const SCATTER = /* glsl */ `
-const vec3 SCATTER_REACH = vec3(0.30, 0.10, 0.055);
+const vec3 SCATTER_REACH = vec3(0.24, 0.09, 0.05);
 vec3 scatteredCosine(float cosine) {
   vec3 t = clamp((cosine + SCATTER_REACH) / (1.0 + SCATTER_REACH), 0.0, 1.0);
   return t * mix(vec3(1.0), t, SCATTER_REACH);
@@ -35,7 +35,7 @@ vec3 scatteredCosine(float cosine) {
 vec3 scatteredShadow(float lit, float cosine) {
   // Beyond the terminator the map only shows the skin shading itself, which the scattered cosine does better.
   float open = mix(lit, 1.0, smoothstep(0.06, -0.12, cosine));
-  return pow(vec3(open), vec3(0.55, 0.92, 1.05));
+  return pow(vec3(open), vec3(0.7, 0.95, 1.03));
 }
 `;
 
@@ -53,7 +53,7 @@ const PORES = /* glsl */ `
 
 const ROUGHNESS = /* glsl */ `
 float strandShade = stubble(vRest + 60.0);
-roughnessFactor += (pores(vRest * 0.35 + 50.0) - 0.5) * 0.25;
+roughnessFactor += (pores(vRest * 0.5 + 50.0) - 0.5) * 0.14;
 roughnessFactor = mix(roughnessFactor, 0.9, vHair);
 diffuseColor.rgb *= mix(1.0, 0.45 + 0.95 * strandShade, vHair);
 diffuseColor.a *= smoothstep(neckFade.x, neckFade.y, vRest.y);
@@ -83,7 +83,10 @@ export function makeSkin(program: Program, neckFade: { value: unknown }): void {
       '#include <common>',
       '#include <common>\nattribute vec3 restPosition;\nattribute float _hair;\nvarying vec3 vRest;\nvarying float vHair;',
     ],
-    ['#include <begin_vertex>', '#include <begin_vertex>\nvRest = restPosition * 1000.0;\nvHair = _hair;'],
+    [
+      '#include <begin_vertex>',
+      '#include <begin_vertex>\nvRest = restPosition * 1000.0;\nvHair = _hair;',
+    ],
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
     ['#include <common>', `#include <common>\n${NOISE}${SCATTER}`],
@@ -118,7 +121,10 @@ function softerShadows(): string {
   const samples = 14;
   const loop = `for (int s = 0; s < ${samples}; s++) shadow += texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( s, ${samples}, phi ) * radius, shadowCoord.z ) );
 				shadow = ( shadow - 1.0 ) / ${samples}.0;`;
-  return ShaderChunk.shadowmap_pars_fragment.replace(/shadow = \(\s*texture\( shadowMap[^;]*\* 0\.2;/, loop);
+  return ShaderChunk.shadowmap_pars_fragment.replace(
+    /shadow = \(\s*texture\( shadowMap[^;]*\* 0\.2;/,
+    loop,
+  );
 }
 
 function replaced(source: string, pairs: readonly (readonly [string, string])[]): string {

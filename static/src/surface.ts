@@ -16,6 +16,8 @@ export interface Eyeball {
   /** Height of the corneal bulge over the ball. */
   bulge: number;
   bulgeRadius: number;
+  /** The bulge falls as (1 - (rho / bulgeRadius)^2)^bulgePower from its pole. */
+  bulgePower: number;
   /** Radius of the ball as drawn. */
   radius: number;
 }
@@ -28,9 +30,6 @@ export interface LidContact {
   /** Distance kept from the ball per vertex [m]. */
   clearance: Float32Array;
 }
-
-/** Falls from the pole of the cornea to its rim: (1 - (rho / radius)^2)^1.2. */
-const BULGE_EXPONENT = 1.2;
 
 export class DrawnSurface {
   /** Current positions, x y z after x y z [m]. */
@@ -79,7 +78,8 @@ export class DrawnSurface {
       if (this.takePoint(point, next)) changed = true;
     }
     if (!changed) return false;
-    for (let row = 0; row < this.dirty.length; row++) if (this.dirty[row] !== 0) this.updateRow(row);
+    for (let row = 0; row < this.dirty.length; row++)
+      if (this.dirty[row] !== 0) this.updateRow(row);
     return true;
   }
 
@@ -92,7 +92,8 @@ export class DrawnSurface {
   private takePoint(point: number, next: Float32Array): boolean {
     const u = this.displacements;
     const at = point * 3;
-    if (u[at] === next[at] && u[at + 1] === next[at + 1] && u[at + 2] === next[at + 2]) return false;
+    if (u[at] === next[at] && u[at + 1] === next[at + 1] && u[at + 2] === next[at + 2])
+      return false;
     u[at] = next[at]!;
     u[at + 1] = next[at + 1]!;
     u[at + 2] = next[at + 2]!;
@@ -131,7 +132,7 @@ export class DrawnSurface {
     const dz = p[row * 3 + 2]! - eye.center[2];
     if (dz <= 0) return;
     const share = Math.max(0, 1 - (dx * dx + dy * dy) / (eye.bulgeRadius * eye.bulgeRadius));
-    const nearest = eye.radius + eye.bulge * share ** BULGE_EXPONENT + clearance;
+    const nearest = eye.radius + eye.bulge * share ** eye.bulgePower + clearance;
     const distance = Math.hypot(dx, dy, dz);
     if (distance >= nearest) return;
     const scale = nearest / distance;

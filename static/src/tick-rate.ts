@@ -13,7 +13,8 @@ export class TickRate {
    */
   at(tick: number, time: number): number {
     const last = this.seen.at(-1);
-    if (last !== undefined && (tick < last.tick || time - last.time > WINDOW_MS)) this.seen.length = 0;
+    if (last !== undefined && (tick < last.tick || time - last.time > WINDOW_MS))
+      this.seen.length = 0;
     this.seen.push({ tick, time });
     while (this.seen.length > 2 && time - this.seen[0]!.time > WINDOW_MS) this.seen.shift();
     const first = this.seen[0]!;

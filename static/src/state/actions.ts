@@ -2,12 +2,14 @@
 
 import type { ViewName } from '../url';
 
+/** What a slider moves: the name of a group in a command, and a name in it. */
+export type Group = 'action_units' | 'muscles' | 'jaw' | 'gaze' | 'head';
+
 export interface Actions {
-  setActionUnit(name: string, value: number): void;
-  setMuscle(name: string, activation: number): void;
-  setJaw(axis: string, degrees: number): void;
-  setGaze(axis: string, degrees: number): void;
-  setHead(axis: string, degrees: number): void;
+  /** Intensity of an action unit, activation of a muscle, degrees of a pose axis. */
+  set(group: Group, name: string, value: number): void;
+  /** Hold it no longer, so that other layers show through; a value of 0 would be held. */
+  letGo(group: Group, name: string): void;
   /** Play an emotion, or change how strong the one that plays is. */
   playEmotion(label: string, intensity: number): void;
   stopEmotion(): void;

@@ -26,6 +26,9 @@ export interface Emotion {
   source: string;
 }
 
+/** Lowest and highest value of each pose axis, e.g. limits.jaw.pitch. */
+export type Limits = Record<string, Record<string, [number, number]>>;
+
 export interface Rig {
   id: string;
   name: string;
@@ -33,6 +36,7 @@ export interface Rig {
   muscles: Muscle[];
   emotions: Emotion[];
   tissue: TissueField[];
+  limits: Limits;
 }
 
 /** One number of the tissue, and the keys that lead to it. */
@@ -45,7 +49,14 @@ interface Described {
   id: string;
   name: string;
   muscles: { name: string; kind?: string; force_scale?: number; strength?: number }[];
-  action_units: { name: string; title?: string; region?: string; source?: string; muscles?: unknown; paired?: boolean }[];
+  action_units: {
+    name: string;
+    title?: string;
+    region?: string;
+    source?: string;
+    muscles?: unknown;
+  }[];
+  limits: Limits;
   emotions: { name: string; recipe?: string; source?: string }[];
   tissue: Record<string, unknown>;
 }
@@ -61,7 +72,10 @@ export function describeRig(described: Described): Rig {
   return {
     id: described.id,
     name: described.name,
-    groups: groupUnits(described.action_units),
+    groups: groupUnits(
+      described.action_units,
+      described.muscles.map(({ name }) => name),
+    ),
     muscles: described.muscles.map(describeMuscle),
     emotions: described.emotions.map((emotion) => ({
       name: emotion.name,
@@ -69,10 +83,11 @@ export function describeRig(described: Described): Rig {
       source: emotion.source ?? '',
     })),
     tissue: tissueFields(described.tissue),
+    limits: described.limits,
   };
 }
 
-function groupUnits(units: Described['action_units']): ActionUnitGroup[] {
+function groupUnits(units: Described['action_units'], muscleNames: string[]): ActionUnitGroup[] {
   const groups = GROUPS.map((title) => ({ title, units: [] as ActionUnit[] }));
   for (const unit of units) {
     const number = unitNumber(unit.name);
@@ -80,11 +95,17 @@ function groupUnits(units: Described['action_units']): ActionUnitGroup[] {
       name: unit.name,
       title: unit.title ?? '',
       source: unit.source ?? '',
-      paired: unit.paired ?? (Number.isFinite(number) && !MIDLINE_UNITS.includes(number)),
+      paired: Number.isFinite(number) && isPaired(unit.muscles, number, muscleNames),
     });
   }
   for (const group of groups) group.units.sort((a, b) => unitNumber(a.name) - unitNumber(b.name));
   return groups.filter((group) => group.units.length > 0);
+}
+
+/** Whether a unit has a muscle on either side; where the rig does not say, by the unit's number. */
+function isPaired(muscles: unknown, number: number, muscleNames: string[]): boolean {
+  if (typeof muscles !== 'object' || muscles === null) return !MIDLINE_UNITS.includes(number);
+  return Object.keys(muscles).some((stem) => muscleNames.includes(`${stem}.L`));
 }
 
 function groupOf(number: number, region: string | undefined): (typeof GROUPS)[number] {
@@ -132,7 +153,10 @@ export function tissueFields(tissue: Record<string, unknown>): TissueField[] {
   return TISSUE_FIELDS.flatMap((name) => {
     const value = tissue[name];
     const layers = typeof value === 'object' && value !== null ? Object.entries(value) : [];
-    return [[name, value] as const, ...layers.map(([layer, number]) => [name, layer, number] as const)]
+    return [
+      [name, value] as const,
+      ...layers.map(([layer, number]) => [name, layer, number] as const),
+    ]
       .map((parts) => ({ path: parts.slice(0, -1) as string[], value: parts.at(-1) as unknown }))
       .filter((field): field is TissueField => typeof field.value === 'number' && field.value > 0);
   });
@@ -140,7 +164,10 @@ export function tissueFields(tissue: Record<string, unknown>): TissueField[] {
 
 /** `{dermis: {stiffness_low: 20}}` for the path of one field: a PATCH that names only that. */
 export function tissuePatch(path: readonly string[], value: number): Record<string, unknown> {
-  return path.reduceRight<unknown>((inner, key) => ({ [key]: inner }), value) as Record<string, unknown>;
+  return path.reduceRight<unknown>((inner, key) => ({ [key]: inner }), value) as Record<
+    string,
+    unknown
+  >;
 }
 
 /** `zygomatic_major.L` reads "Zygomatic major". */
@@ -151,5 +178,7 @@ export function readable(name: string): string {
 
 /** FACS letter of an intensity: A to E in fifths, nothing at rest. */
 export function intensityLetter(value: number): string {
-  return value < 0.005 ? '' : 'ABCDE'.charAt(Math.min(4, Math.max(0, Math.ceil(value * 5 - 1e-6) - 1)));
+  return value < 0.005
+    ? ''
+    : 'ABCDE'.charAt(Math.min(4, Math.max(0, Math.ceil(value * 5 - 1e-6) - 1)));
 }

@@ -1,11 +1,12 @@
 // Everything the panels show, as one reactive object.
 
 import type { Held, Numbers } from '../protocol';
+import type { Group } from './actions';
 import type { Rig } from './rig';
 
 /** Values that the visitor's own sliders hold. */
 export class Sliders {
-  actionUnits = $state<Numbers>({});
+  action_units = $state<Numbers>({});
   muscles = $state<Numbers>({});
   jaw = $state<Numbers>({});
   gaze = $state<Numbers>({});
@@ -13,11 +14,17 @@ export class Sliders {
 
   /** Show what a layer holds, e.g. of a session that was open before. */
   take(held: Held): void {
-    this.actionUnits = { ...held.action_units };
+    this.action_units = { ...held.action_units };
     this.muscles = { ...held.muscles };
     this.jaw = numbersOnly(held.jaw);
     this.gaze = numbersOnly(held.gaze);
     this.head = numbersOnly(held.head);
+  }
+
+  /** All of them, as a command names them. */
+  all(): Record<Group, Numbers> {
+    const { action_units, muscles, jaw, gaze, head } = this;
+    return $state.snapshot({ action_units, muscles, jaw, gaze, head });
   }
 }
 
