@@ -1,0 +1,142 @@
+"""Rigs over HTTP: described, derived, edited live, taken away as GLB."""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+
+import pytest
+from starlette.testclient import TestClient
+
+
+def glb_json(data: bytes) -> dict[str, object]:
+    magic, _, _ = struct.unpack_from("<4sII", data)
+    assert magic == b"glTF"
+    (length,) = struct.unpack_from("<I", data, 12)
+    return json.loads(data[20 : 20 + length])
+
+
+def test_both_built_in_rigs_are_listed(client: TestClient) -> None:
+    lines = client.get("/api/rigs").json()["rigs"]
+    assert [line["name"] for line in lines[:2]] == ["standard", "paper"]
+
+
+def test_a_rig_is_described(client: TestClient) -> None:
+    rig = client.get("/api/rigs/standard").json()
+    assert {"id", "muscles", "action_units", "emotions", "tissue", "mesh"} <= set(rig)
+    assert "AU12" in {unit["name"] for unit in rig["action_units"]}
+    assert client.get(f"/api/rigs/{rig['id']}").json() == rig
+
+
+@pytest.mark.parametrize("file", ["standard/surface.glb", "standard/expressions/12C.glb"])
+def test_a_file_is_sent_once(client: TestClient, file: str) -> None:
+    answer = client.get(f"/api/rigs/{file}")
+    assert answer.status_code == 200
+    assert answer.headers["Content-Type"] == "model/gltf-binary"
+    glb_json(answer.content)
+    tag = answer.headers["ETag"]
+    again = client.get(f"/api/rigs/{file}", headers={"If-None-Match": tag})
+    assert again.status_code == 304
+    assert again.content == b""
+
+
+def test_the_surface_is_tagged_by_the_rig(client: TestClient) -> None:
+    rig = client.get("/api/rigs/standard").json()["id"]
+    assert client.get("/api/rigs/standard/surface.glb").headers["ETag"] == f'"{rig}"'
+
+
+def test_arkit_names_are_not_available_yet(client: TestClient) -> None:
+    answer = client.get("/api/rigs/standard.glb", params={"names": "arkit"})
+    assert answer.status_code == 422
+    assert answer.json()["error"] == "not_available"
+
+
+@pytest.mark.parametrize("path", ["zzz", "zzz.glb", "zzz/surface.glb", "zzz/expressions/12C.glb"])
+def test_an_unknown_rig_is_not_found(client: TestClient, path: str) -> None:
+    answer = client.get(f"/api/rigs/{path}")
+    assert answer.status_code == 404
+    assert answer.json()["error"] == "unknown_rig"
+    assert "standard" in answer.json()["known"]
+
+
+def test_an_expression_that_cannot_be_read_is_refused(client: TestClient) -> None:
+    answer = client.get("/api/rigs/standard/expressions/smile.glb")
+    assert answer.status_code == 422
+
+
+CUSTOM = {
+    "base": "standard",
+    "tissue": {},
+    "action_units": {"AU12": {"muscles": {"zygomatic_major": 0.5}}},
+    "emotions": {"smirk": "L12C"},
+}
+
+
+def test_the_same_changes_give_the_same_rig(client: TestClient) -> None:
+    first = client.post("/api/rigs", json=CUSTOM)
+    assert first.status_code == 201, first.text
+    second = client.post("/api/rigs", json=CUSTOM)
+    assert second.status_code == 200
+    assert second.json()["id"] == first.json()["id"]
+    session = client.post("/api/sessions", json={"rig": first.json()["id"]}).json()["id"]
+    played = client.post(f"/api/sessions/{session}/emotions", json={"label": "smirk"})
+    assert played.json()["recipe"] == "L12C"
+    client.delete(f"/api/sessions/{session}")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"recipe": {"age": 80}},
+        {"tissue": {"nonsense": 1}},
+        {"tissue": {"damping": "much"}},
+        {"tissue": {"damping": [[[[[[[[[[1]]]]]]]]]]}},
+        {"muscles": {"biceps.L": {"radius": 1}}},
+        {"muscles": {"zygomatic_major.L": {"attachment": "here"}}},
+        {"muscles": {"zygomatic_major.L": 5}},
+        {"muscles": {"zygomatic_major.L": {"radius": 0.001}}},
+        {"action_units": {"AU12": 5}},
+        {"action_units": {"AU12": {"muscles": [1]}}},
+        {"action_units": {"AU12": {"muscles": {"zygomatic_major": None}}}},
+        {"emotions": {"odd": {"recipe": "12C", "synonyms": 5}}},
+        {"emotions": {"odd": 7}},
+        {"base": "nobody"},
+        {"name": ""},
+    ],
+)
+def test_changes_that_cannot_be_made_are_refused(
+    client: TestClient, changes: dict[str, object]
+) -> None:
+    answer = client.post("/api/rigs", json={"base": "standard", **changes})
+    assert answer.status_code in (404, 422), answer.text
+    assert set(answer.json()) <= {"error", "message", "known"}
+
+
+def test_tissue_is_edited_under_a_live_face(client: TestClient, session: str) -> None:
+    client.patch(f"/api/sessions/{session}/controls", json={"action_units": {"AU12": 1}})
+    time.sleep(0.5)
+    before = client.get(f"/api/sessions/{session}").json()
+    tissue = client.get("/api/rigs/standard").json()["tissue"]
+    answer = client.patch(
+        f"/api/sessions/{session}/tissue", json={"damping": tissue["damping"] * 1.25}
+    )
+    assert answer.status_code == 200, answer.text
+    after = client.get(f"/api/sessions/{session}").json()
+    assert after["rig"] == answer.json()["rig"] != before["rig"]
+    assert answer.json()["tick"] >= before["tick"]
+    assert after["layers"] == before["layers"]
+    assert client.get(f"/api/rigs/{after['rig']}").status_code == 200
+
+
+def test_a_muscle_is_edited_under_a_live_face(client: TestClient, session: str) -> None:
+    path = f"/api/sessions/{session}/muscles/zygomatic_major.L"
+    answer = client.patch(path, json={"strength": 1.2})
+    assert answer.status_code == 200, answer.text
+    rig = client.get(f"/api/rigs/{answer.json()['rig']}").json()
+    muscle = next(line for line in rig["muscles"] if line["name"] == "zygomatic_major.L")
+    assert muscle["strength"] == 1.2
+    assert client.patch(path, json={"colour": "red"}).status_code == 422
+    unknown = client.patch(f"/api/sessions/{session}/muscles/biceps.L", json={"strength": 1})
+    assert unknown.status_code == 404
+    assert "zygomatic_major.L" in unknown.json()["known"]
