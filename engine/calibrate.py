@@ -1,0 +1,88 @@
+"""Fits each action unit's curve: intensity becomes the fraction of the full landmark displacement.
+
+Run `python -m engine.calibrate` after a change to tissue, muscles or recipes; it rewrites the
+curves in `engine/data/action_units.json`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from .arrays import FloatArray
+from .measure import LANDMARKS, Landmark, settle
+from .rig import Rig, builtin_rig
+from .timeline import Keyframe
+
+SCALES = np.round(np.arange(0.1, 1.81, 0.1), 3)
+"""Scales of a recipe that are simulated; what lies between is interpolated."""
+INTENSITIES = (0.25, 0.5, 0.75, 1.0)
+AIM = 0.45
+"""Where in the human range the full displacement is put: 0 its low end, 1 its high end."""
+
+
+def fit_curve(scales: FloatArray, values: FloatArray, full: float) -> list[list[float]]:
+    """Return curve knots at which a landmark reaches each fraction of `full`, mm.
+
+    Args:
+        scales: Of the recipe, rising from 0.
+        values: The landmark's figure at each, mm.
+        full: Figure at intensity 1; if it is never reached, the greatest that is.
+    """
+    rising = np.maximum.accumulate(values)
+    rest, reachable = float(values[0]), min(full, float(rising[-1]))
+    knots = [[0.0, 0.0]]
+    for intensity in INTENSITIES:
+        wanted = rest + intensity * (reachable - rest)
+        index = int(np.searchsorted(rising, wanted))
+        index = min(max(index, 1), len(scales) - 1)
+        low, high = rising[index - 1], rising[index]
+        share = (wanted - low) / (high - low) if high > low else 1.0
+        scale = scales[index - 1] + share * (scales[index] - scales[index - 1])
+        knots.append([intensity, round(float(scale), 4)])
+    return knots
+
+
+def uncalibrated(rig: Rig) -> Rig:
+    """Return `rig` with every curve straight, reaching up to the greatest scale."""
+    top = float(SCALES[-1])
+    straight = ((0.0, 0.0), (1.0, top))
+    units = {name: replace(unit, curve=straight) for name, unit in rig.action_units.items()}
+    return replace(rig, action_units=units)
+
+
+def calibrate(rig: Rig) -> Mapping[str, list[list[float]]]:
+    """Return the fitted curve of every unit that has a landmark to fit."""
+    plain, top = uncalibrated(rig), float(SCALES[-1])
+    curves: dict[str, list[list[float]]] = {}
+    for landmark in LANDMARKS:
+        if landmark.calibrates and landmark.unit in rig.action_units:
+            curves[landmark.unit] = _curve(plain, landmark, top)
+    return curves
+
+
+def _curve(rig: Rig, landmark: Landmark, top: float) -> list[list[float]]:
+    keyframes = [Keyframe()] + [
+        Keyframe(action_units={landmark.unit: float(scale) / top}) for scale in SCALES
+    ]
+    values = np.array([landmark.measure(face) for face in settle(rig, keyframes)])
+    full = landmark.low + AIM * (landmark.high - landmark.low)
+    return fit_curve(np.concatenate([[0.0], SCALES]), values, full)
+
+
+def main() -> None:
+    """Rewrite the curves of the built-in action units."""
+    path = Path(__file__).parent / "data" / "action_units.json"
+    data = json.loads(path.read_text(encoding="utf-8"))
+    curves = calibrate(builtin_rig("standard"))
+    for entry in data["action_units"]:
+        entry["curve"] = curves.get(entry["name"], entry["curve"])
+    path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
