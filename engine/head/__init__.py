@@ -13,6 +13,7 @@ from .head import (
     LidContact,
     Part,
 )
+from .mesh import head_from_mesh, read_head
 from .skin import LEVELS
 from .standard import paper_head, standard_head
 
@@ -27,6 +28,8 @@ __all__ = [
     "Head",
     "LidContact",
     "Part",
+    "head_from_mesh",
     "paper_head",
+    "read_head",
     "standard_head",
 ]

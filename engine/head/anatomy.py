@@ -1,8 +1,8 @@
 """Anatomy as fields over the skin: depth of the tissue, its hold on the skull, the jaw's share.
 
-Depths are of the order that forensic tables of facial tissue give, simplified; weights were chosen so
-that retaining ligaments hold and the cheek, lips and lids slide. None comes from Zhang et al. 2001,
-whose tissue is uniform.
+Depths are of the order that forensic tables of facial tissue give, simplified; weights were chosen
+so that retaining ligaments hold and the cheek, lips and lids slide. None comes from Zhang et al.
+2001, whose tissue is uniform.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Graded levels of detail: fine faces where the face lives, coarse ones on scalp, neck and throat."""
+"""Graded levels of detail: fine where the face lives, coarse on scalp, neck and throat."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def graded_triangles(
         _split(topology.faces[plain], coarse.parents[plain], positions),
     ]
     for face in np.flatnonzero(stitched & left):
-        fan = _best_fan(_outline(topology, face, edge_is_fine), positions)
+        fan = _best_fan(_outline(topology, int(face), edge_is_fine), positions)
         pieces.append((fan, np.full(len(fan), coarse.parents[face])))
     triangles = np.vstack([piece[0] for piece in pieces])
     parents = np.concatenate([piece[1] for piece in pieces])

@@ -15,6 +15,8 @@ OUTLINE = np.array([
     (19, -8), (15, -24), (9, -30), (3, -26), (-3, -14), (-12, -8), (-27, -12), (-36, -30),
     (-42, -58), (-50, -80), (-75, -88), (-120, -88), (-120, 140), (110, 140),
 ], dtype=float)  # fmt: skip
+EAR_CENTER = np.array([-14.0, -6.0])
+EAR_RADII = np.array([13.0, 17.0])
 FADE = (-4.0, 7.0)
 """Distance inside the outline [mm] over which hair grows from none to full."""
 
@@ -22,7 +24,11 @@ FADE = (-4.0, 7.0)
 def hair_mask(vertices: FloatArray) -> FloatArray:
     """Return how densely hair grows at points (n, 3), 0..1, shape (n,)."""
     profile = vertices[:, [2, 1]]
-    distance = distance_inside(profile, OUTLINE) + 1.1 * noise(vertices, 5.0, 5)
+    distance = distance_inside(profile, OUTLINE)
+    # No hair grows under the ear.
+    under_ear = np.hypot(*((profile - EAR_CENTER) / EAR_RADII).T) - 1
+    distance = np.minimum(distance, under_ear * EAR_RADII.min())
+    distance += 1.1 * noise(vertices, 5.0, 5)
     # The front hairline is softer and less even than the nape.
     distance += 1.6 * noise(vertices, 11.0, 6) * smoothstep(40, 75, vertices[:, 2])
     return smoothstep(*FADE, distance)
@@ -35,7 +41,7 @@ def distance_inside(points: FloatArray, outline: FloatArray) -> FloatArray:
     offset = points[:, None, :] - starts
     share = np.clip((offset * side).sum(axis=2) / (side**2).sum(axis=1), 0, 1)
     gap = np.linalg.norm(offset - share[..., None] * side, axis=2).min(axis=1)
-    return np.where(inside_outline(points, outline), gap, -gap)
+    return np.asarray(np.where(inside_outline(points, outline), gap, -gap))
 
 
 def inside_outline(points: FloatArray, outline: FloatArray) -> BoolArray:

@@ -1,4 +1,4 @@
-"""The drawn skin: a level of the limit surface, coloured, carried by the tissue, kept off the eyes."""
+"""The drawn skin: a level of the limit surface, carried by the tissue and kept off the eyes."""
 
 from __future__ import annotations
 

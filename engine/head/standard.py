@@ -163,7 +163,7 @@ def _creased(cage: Cage) -> tuple[Topology, IntArray, FloatArray]:
 
 
 def _mask(cage: Cage) -> BoolArray:
-    """Return the cage faces of the paper's mask: the sheet and the front of the neck, shape (f,)."""
+    """Return the cage faces of the paper's mask, sheet and front of the neck, shape (f,)."""
     chosen = face_sheet(cage)
     inside = np.zeros(len(cage.points), dtype=bool)
     inside[np.unique(cage.faces[chosen])] = True

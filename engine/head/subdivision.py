@@ -1,7 +1,8 @@
 """Catmull-Clark subdivision as sparse matrices, with semi-sharp creases and limit positions.
 
-Catmull and Clark 1978; boundary, crease and limit rules after DeRose, Kass, Truong 1998 ("Subdivision
-surfaces in character animation") and Halstead, Kass, DeRose 1993 (limit masks, interpolation).
+Catmull and Clark 1978; boundary, crease and limit rules after DeRose, Kass, Truong 1998
+("Subdivision surfaces in character animation") and Halstead, Kass, DeRose 1993 (limit masks,
+interpolation).
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from ..arrays import BoolArray, FloatArray, IntArray
 
@@ -101,14 +102,23 @@ def next_corners(faces: IntArray) -> IntArray:
 
 
 def boundary_loops(topology: Topology) -> list[IntArray]:
-    """Return the vertices of each connected piece of boundary, longest first."""
+    """Return the vertices of each connected piece of boundary, most vertices first."""
     edges = topology.edges[topology.boundary_edges]
-    size = topology.vertex_count
-    graph = sp.coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(size, size))
-    _, label = sp.csgraph.connected_components(graph, directed=False)
+    label = _pieces(edges, topology.vertex_count)
     members = np.unique(edges)
     loops = [members[label[members] == number] for number in np.unique(label[members])]
     return sorted(loops, key=len, reverse=True)
+
+
+def components(topology: Topology) -> IntArray:
+    """Return the number of the connected piece that each vertex belongs to, shape (v,)."""
+    return _pieces(topology.edges, topology.vertex_count)
+
+
+def _pieces(edges: IntArray, size: int) -> IntArray:
+    graph = sp.coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(size, size))
+    _, label = connected_components(graph, directed=False)
+    return np.asarray(label)
 
 
 def _incidence(table: IntArray, column_count: int) -> sp.csr_array:

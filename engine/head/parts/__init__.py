@@ -7,7 +7,7 @@ from ..head import DrawnSurface, Part
 from .brows import brow_line, brows_part
 from .ears import ear_parts
 from .eyes import eye_parts
-from .hair import hair_part
+from .hair import hair_parts
 from .lashes import lashes_part
 from .teeth import teeth_parts
 from .tongue import tongue_part
@@ -27,7 +27,7 @@ def head_parts(skin: DrawnSurface, lid_edge: FloatArray) -> tuple[Part, ...]:
         tongue_part(),
         brows_part(skin),
         lashes_part(skin, lid_edge),
-        *hair_part(skin),
+        *hair_parts(skin),
     )
 
 

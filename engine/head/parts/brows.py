@@ -8,9 +8,9 @@ from ...arrays import FloatArray
 from ..head import DrawnSurface, Part
 from .strands import FrontView, Strands, strand_part
 
-HAIRS = 460
+HAIRS = 500
 POINTS = 4
-WIDTH = 0.19
+WIDTH = 0.165
 
 # The brow's middle line in the front view and its width, by share of the way outwards.
 LINE_SHARES = (0.0, 0.3, 0.62, 0.8, 1.0)
@@ -20,7 +20,7 @@ BROW_WIDTHS = ((0.0, 0.12, 0.4, 0.65, 1.0), (3.2, 4.9, 4.6, 3.3, 0.8))
 DIRECTIONS = ((0.0, 0.12, 0.35, 0.7, 1.0), (78.0, 58.0, 32.0, 5.0, -22.0))
 LENGTHS = ((0.0, 0.2, 0.7, 1.0), (5.0, 6.8, 7.0, 4.6))
 
-COLOR = np.array([0.060, 0.036, 0.024])
+COLOR = np.array([0.080, 0.049, 0.033])
 
 
 def brow_line(share: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

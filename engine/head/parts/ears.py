@@ -17,7 +17,7 @@ from ..geometry import (
 )
 from ..head import Part
 
-CENTER = np.array([77.0, -17.0, -17.0])
+CENTER = np.array([78.0, -17.0, -17.0])
 TILT = np.radians(-12)
 """The ear leans back by this."""
 FLARE = np.radians(27)
@@ -29,8 +29,8 @@ OUTLINE = (
     (0, 15.5), (30, 19.0), (60, 26.5), (90, 32.0), (120, 31.5), (150, 25.5), (180, 21.0),
     (210, 21.5), (240, 26.5), (265, 31.0), (285, 30.0), (310, 22.5), (335, 16.5),
 )  # fmt: skip
-RINGS = np.r_[np.linspace(0, 0.3, 5), np.linspace(0.36, 0.98, 19), 1.0, 1.0, 0.97, 0.9, 0.8, 0.68]
-FOLD = (0.0, 1.8, 4.2, 8.0, 13.0, 20.0)
+RINGS = np.r_[np.linspace(0, 0.3, 5), np.linspace(0.36, 0.98, 19), 1.0, 1.0, 0.97, 0.9, 0.78, 0.62]
+FOLD = (0.0, 1.8, 4.2, 8.0, 14.0, 26.0)
 """How far the last rings fall behind the rim, mm."""
 
 
@@ -89,7 +89,7 @@ def _relief(share: FloatArray, angle: FloatArray) -> FloatArray:
     back, up = 0.5 - 0.5 * np.cos(angle), np.sin(angle)
     forward, rise = share * np.cos(angle), share * np.sin(angle)
     rear = smoothstep(0.02, 0.35, back) * (1 - smoothstep(-0.55, -0.95, up))
-    top = smoothstep(0.2, 0.6, up)
+    top = smoothstep(0.2, 0.6, up) * smoothstep(0.85, -0.1, np.cos(angle))
     rim = np.clip(np.maximum(rear, top * 0.9), 0, 1)
 
     def ridge(place: float, width: float) -> FloatArray:
@@ -98,7 +98,7 @@ def _relief(share: FloatArray, angle: FloatArray) -> FloatArray:
     def knob(x: float, y: float, width: float, tallness: float) -> FloatArray:
         return np.asarray(np.exp(-(((forward - x) / width) ** 2) - ((rise - y) / tallness) ** 2))
 
-    height = -5.8 * np.exp(-((share / 0.36) ** 4))  # the bowl (concha)
+    height = -5.0 * np.exp(-((share / 0.36) ** 4))  # the bowl (concha)
     height = height + 4.0 * ridge(0.60, 0.105) * rim * (1 - 0.35 * top)  # antihelix
     height -= 1.5 * ridge(0.79, 0.07) * rim  # scapha
     height += 4.6 * ridge(0.94, 0.055) * rim  # helix
@@ -107,8 +107,8 @@ def _relief(share: FloatArray, angle: FloatArray) -> FloatArray:
     height += 2.2 * knob(0.25, 0.16, 0.30, 0.06) * smoothstep(0.9, 0.3, share)  # crus of the helix
     height += 1.2 * smoothstep(-0.6, -0.9, up * share)  # lobe
     # The front edge dives into the cheek.
-    dive = smoothstep(0.62, 1.0, share) * smoothstep(0.55, 0.95, 1 - back)
-    return np.asarray(height - 9.0 * dive * smoothstep(1.0, 0.55, np.abs(up)))
+    dive = smoothstep(0.62, 1.0, share) * smoothstep(0.1, 0.75, np.cos(angle))
+    return np.asarray(height - 9.0 * dive * smoothstep(-1.0, -0.6, up))
 
 
 def _colors(local: FloatArray) -> FloatArray:

@@ -37,7 +37,7 @@ LIMBUS = np.array([0.05, 0.04, 0.035])
 SCLERA = np.array([0.62, 0.555, 0.51])
 SCLERA_PINK = np.array([0.46, 0.25, 0.21])
 CARUNCLE = np.array([0.50, 0.20, 0.17])
-CORNER_FILLER = np.array([0.50, 0.26, 0.23])
+CORNER_FILLER = np.array([0.50, 0.33, 0.29])
 
 
 def eye_parts() -> list[Part]:
@@ -169,8 +169,8 @@ def _corner_flesh() -> tuple[Mesh, FloatArray]:
     The ball is narrower than the opening of the lids.
     """
     sphere, triangles = unit_sphere(12, 16)
-    inner = sphere * [3.9, 2.7, 2.6] + [19.4, -1.0, 75.0]
-    outer = sphere * [3.0, 2.4, 3.0] + [44.2, 0.7, 72.0]
+    inner = sphere * [4.1, 3.3, 2.8] + [19.4, -0.7, 74.8]
+    outer = sphere * [3.9, 3.6, 4.6] + [42.9, 0.4, 71.2]
     colors = np.repeat([CARUNCLE, CORNER_FILLER], len(sphere), axis=0)
     mesh = np.vstack([inner, outer])
     return (mesh, np.vstack([triangles, triangles + len(sphere)])), colors

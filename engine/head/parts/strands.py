@@ -110,7 +110,7 @@ class FrontView:
 
         Where several layers lie under a point the foremost counts.
         """
-        _, near = self._tree.query(points, k=min(CANDIDATES, len(self._corners)))
+        near = np.asarray(self._tree.query(points, k=min(CANDIDATES, len(self._corners)))[1])
         corners = self._corners[near]
         a, b, c = (corners[:, :, corner, :2] for corner in range(3))
         p = points[:, None, :]
@@ -122,7 +122,7 @@ class FrontView:
         front = np.where(inside, position[:, :, 2], -np.inf)
         best = front.argmax(axis=1)
         row = np.arange(len(points))
-        normal = np.einsum("nc,ncx->nx", weights[row, best], self._normals[near[row, best]])
+        normal = (weights[row, best][:, :, None] * self._normals[near[row, best]]).sum(axis=1)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
         return position[row, best], normal, inside[row, best]
 

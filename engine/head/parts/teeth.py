@@ -93,9 +93,9 @@ CROWN_PROFILE = (
 )
 
 # Linear RGB.
-ENAMEL = np.array([0.70, 0.635, 0.53])
-ENAMEL_NECK = np.array([0.60, 0.485, 0.335])
-ENAMEL_EDGE = np.array([0.62, 0.62, 0.60])
+ENAMEL = np.array([0.80, 0.69, 0.53])
+ENAMEL_NECK = np.array([0.68, 0.51, 0.32])
+ENAMEL_EDGE = np.array([0.74, 0.69, 0.60])
 GUM = np.array([0.46, 0.165, 0.155])
 GUM_MARGIN = np.array([0.56, 0.25, 0.225])
 
@@ -147,8 +147,8 @@ def dental_arch(arch: Arch, along: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def mouth_shade(vertices: FloatArray) -> FloatArray:
     """Return how much light reaches points (v, 3) inside the mouth, 0..1, shape (v,)."""
-    depth = smoothstep(52.0, 92.0, vertices[:, 2] - 0.25 * np.abs(vertices[:, 0]))
-    return np.asarray(0.16 + 0.84 * depth)
+    depth = smoothstep(56.0, 93.0, vertices[:, 2] - 0.3 * np.abs(vertices[:, 0]))
+    return np.asarray(0.12 + 0.88 * depth)
 
 
 def _row(arch: Arch) -> tuple[Mesh, FloatArray]:
@@ -210,10 +210,10 @@ def _edge_relief(
     if number < 2:
         return np.asarray(near_edge * 0.9 * np.abs(2 * across) ** 4)
     if number == 2:
-        return np.asarray(near_edge * 2.4 * np.abs(2 * across) ** 1.3)
+        return np.asarray(near_edge * 1.5 * np.abs(2 * across) ** 1.3)
     middle = deep - deep.mean()
     groove = np.exp(-((middle / 1.6) ** 2))
-    return np.asarray(near_edge * (0.9 * groove + 0.5 * np.cos(2 * np.pi * 2 * across)))
+    return np.asarray(near_edge * (0.7 * groove + 0.25 * np.cos(2 * np.pi * 2 * across)))
 
 
 def _enamel(height_share: FloatArray, across: FloatArray, number: int) -> FloatArray:

@@ -65,16 +65,16 @@ def _back_edge(front: FloatArray, spoke: int) -> FloatArray:
     back = front + np.array([inwards, rise * thickness, -1.7 * thickness - 0.5])
     offset = back - EYE_CENTER
     distance = float(np.linalg.norm(offset))
-    return EYE_CENTER + offset * max(1.0, BACK_EDGE_RADIUS / distance)
+    return np.asarray(EYE_CENTER + offset * max(1.0, BACK_EDGE_RADIUS / distance))
 
 
 def _lid_back(back_edge: FloatArray, spoke: int) -> FloatArray:
     offset = back_edge - EYE_CENTER
     if spoke in (0, 8):
-        return back_edge + np.array([0.0, 0.0, -6.0])
+        return np.asarray(back_edge + np.array([0.0, 0.0, -6.0]))
     across, up = offset[0] * 1.12, offset[1] * 1.9
     depth = LID_BACK_RADIUS**2 - across**2 - up**2
-    return EYE_CENTER + np.array([across, up, np.sqrt(depth) if depth > 4 else 2.0])
+    return np.asarray(EYE_CENTER + np.array([across, up, np.sqrt(depth) if depth > 4 else 2.0]))
 
 
 def _add_face(half: HalfCage, inner: str, outer: str, spoke: int, region: str) -> None:

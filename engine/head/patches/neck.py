@@ -38,8 +38,8 @@ def _place_ring(half: HalfCage, ring: int, edge: list[str], below: list[str]) ->
     axis, length, width = (front + back) / 2, (front - back) / 2, HALF_WIDTH * widening
     share = np.arange(len(edge)) / (len(edge) - 1)
     points = np.array([half.points[name] for name in edge])
-    # Each point keeps the angle of the edge above it: evenly spaced ones would shear the quads. Only
-    # far below does the spacing even out.
+    # Each point keeps the angle of the edge above it: evenly spaced ones would shear the quads.
+    # Only far below does the spacing even out.
     angle = np.arctan2(points[:, 0], points[:, 2] - axis)
     angle[0], angle[-1] = 0.0, np.pi
     evening = 0.35 * ring / (len(RINGS) - 1)
