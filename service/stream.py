@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
-from collections.abc import Mapping
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
 from typing import Any
 
+import anyio
 from fastapi import APIRouter, WebSocket
 from pydantic import ValidationError
 from starlette.websockets import WebSocketDisconnect
@@ -56,18 +57,15 @@ async def stream(socket: WebSocket, session_id: str) -> None:
 
 async def _converse(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:
     """Send and receive side by side until either ends."""
-    tasks = {
-        asyncio.create_task(_send(socket, parts, session, viewer)),
-        asyncio.create_task(_receive(socket, parts, session, viewer)),
-    }
-    try:
-        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-    for task in done:
-        task.result()
+    async with anyio.create_task_group() as both:
+
+        async def until_the_end(side: Callable[..., Awaitable[None]]) -> None:
+            with suppress(WebSocketDisconnect):
+                await side(socket, parts, session, viewer)
+            both.cancel_scope.cancel()
+
+        both.start_soon(until_the_end, _send)
+        both.start_soon(until_the_end, _receive)
 
 
 async def _send(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:

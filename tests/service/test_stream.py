@@ -1,0 +1,250 @@
+"""The socket: hello, frames, commands, and viewers that are late or slow."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from starlette.testclient import TestClient, WebSocketDenialResponse, WebSocketTestSession
+from starlette.websockets import WebSocketDisconnect
+
+from service.protocol import SurfaceFrame, decode_frame
+
+PROTOCOL = "risorius.v1"
+
+
+def connect(client: TestClient, session: str) -> WebSocketTestSession:
+    path = f"ws://localhost/api/sessions/{session}/stream"
+    return client.websocket_connect(path, subprotocols=[PROTOCOL])
+
+
+def next_message(socket: WebSocketTestSession) -> dict[str, object]:
+    message = socket.receive()
+    if message["type"] == "websocket.close":
+        raise WebSocketDisconnect(message["code"], message["reason"])
+    return message
+
+
+def events_until(
+    socket: WebSocketTestSession, kind: str, *, messages: int = 600
+) -> dict[str, object]:
+    """Read until an event of that type comes."""
+    for _ in range(messages):
+        message = next_message(socket)
+        if message.get("text") is not None:
+            event = json.loads(message["text"])
+            if event["type"] == kind:
+                return event
+    raise AssertionError(f"no {kind} came")
+
+
+def frame_where(
+    socket: WebSocketTestSession, true: Callable[[SurfaceFrame], bool], *, messages: int = 900
+) -> SurfaceFrame:
+    """Read until a frame for which `true` holds."""
+    for _ in range(messages):
+        message = next_message(socket)
+        if message.get("bytes") is not None:
+            frame = decode_frame(message["bytes"])
+            if true(frame):
+                return frame
+    raise AssertionError("no such frame came")
+
+
+def test_hello_comes_first_and_a_frame_stands_alone(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        assert socket.accepted_subprotocol == PROTOCOL
+        hello = json.loads(socket.receive()["text"])
+        rig = client.get("/api/rigs/standard").json()
+        assert hello["type"] == "hello"
+        assert hello["protocol"] == PROTOCOL
+        assert hello["session"] == session
+        assert hello["rig"] == rig["id"]
+        assert hello["surface"] == f"/api/rigs/{rig['id']}/surface.glb"
+        assert hello["vertices"] == rig["mesh"]["surface_vertices"]
+        assert (hello["rate"], hello["grid"]) == (60, 2e-5)
+        assert set(hello["state"]) == {"layers", "merged"}
+        frame = frame_where(socket, lambda _: True)
+        assert len(frame.steps) == hello["vertices"]
+
+
+def test_a_command_over_the_socket_moves_the_face(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        frame_where(socket, lambda frame: frame.asleep)
+        socket.send_json({"type": "controls", "action_units": {"AU12": 1}, "fade": 0.1})
+        moved = frame_where(socket, lambda frame: bool(np.abs(frame.displacements).max() > 3e-3))
+        assert not moved.asleep
+        state = events_until(socket, "state")
+        assert state["layers"]["puppet"]["action_units"] == {"AU12": 1.0}
+        settled = frame_where(socket, lambda frame: frame.asleep)
+        socket.send_json({"type": "controls", "replace": True, "action_units": {"R1": 0.5}})
+        frame_where(socket, lambda frame: frame.tick > settled.tick)
+        state = events_until(socket, "state")
+        assert state["layers"]["puppet"]["action_units"] == {"R1": 0.5}
+
+
+def test_an_emotion_over_the_socket_is_played(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        events_until(socket, "hello")
+        socket.send_json({"type": "emotion", "label": "joy", "intensity": 0.5})
+        state = events_until(socket, "state")
+        while "emotion" not in state["layers"]:
+            state = events_until(socket, "state")
+        assert state["layers"]["emotion"]["emotion"]["label"] == "happiness"
+
+
+def test_a_sleeping_face_is_repeated_each_second(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        first = frame_where(socket, lambda frame: frame.asleep)
+        started = time.monotonic()
+        again = frame_where(socket, lambda frame: frame.asleep)
+        assert time.monotonic() - started < 3.0
+        assert again.tick == first.tick
+
+
+def test_a_late_viewer_is_whole_at_once(client: TestClient, session: str) -> None:
+    client.patch(f"/api/sessions/{session}/controls", json={"action_units": {"AU12": 1}})
+    with connect(client, session) as early:
+        last = frame_where(early, lambda frame: frame.asleep and frame.tick > 0)
+        with connect(client, session) as late:
+            frame = frame_where(late, lambda _: True)
+            np.testing.assert_array_equal(frame.steps, last.steps)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{",
+        "[]",
+        '{"type":"dance"}',
+        '{"type":"controls","action_units":{"AU12":NaN}}',
+        '{"type":"controls","action_units":{"AU99":1}}',
+        '{"type":"controls","action_units":{"AU12":2}}',
+        '{"type":"controls","arkit":{"jawOpen":1}}',
+        '{"type":"emotion","label":"zzz"}',
+        '{"type":"emotion"}',
+        '{"type":"ack"}',
+        '{"type":"ack","tick":-1}',
+        "\udcff".encode("utf-8", "replace").decode() + "x",
+    ],
+)
+def test_a_message_that_cannot_be_obeyed_is_answered(
+    client: TestClient, session: str, text: str
+) -> None:
+    with connect(client, session) as socket:
+        events_until(socket, "hello")
+        socket.send_text(text)
+        error = events_until(socket, "error")
+        assert set(error) <= {"type", "error", "message", "known"}
+        socket.send_json({"type": "controls", "action_units": {"AU12": 1}})
+        frame_where(socket, lambda frame: frame.tick > 0)
+
+
+def test_binary_messages_are_not_understood(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        events_until(socket, "hello")
+        socket.send_bytes(b"\1\2\3")
+        assert events_until(socket, "error")["error"] == "invalid_message"
+
+
+def test_a_message_beyond_the_limit_ends_the_socket(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        events_until(socket, "hello")
+        socket.send_text("x" * 70_000)
+        with pytest.raises(WebSocketDisconnect) as closed:
+            events_until(socket, "never")
+        assert closed.value.code == 1009
+
+
+def test_another_version_is_closed_with_a_reason(client: TestClient, session: str) -> None:
+    path = f"ws://localhost/api/sessions/{session}/stream"
+    with client.websocket_connect(path, subprotocols=["risorius.v2"]) as socket:
+        with pytest.raises(WebSocketDisconnect) as closed:
+            socket.receive_text()
+        assert closed.value.code == 1002
+        assert PROTOCOL in closed.value.reason
+
+
+def test_an_unknown_session_has_no_stream(client: TestClient) -> None:
+    with pytest.raises(WebSocketDenialResponse) as denied, connect(client, "nobody"):
+        pass
+    assert denied.value.status_code == 404
+    assert denied.value.json()["error"] == "unknown_session"
+
+
+def test_closing_a_session_ends_its_sockets(client: TestClient) -> None:
+    session = client.post("/api/sessions", json={}).json()["id"]
+    with connect(client, session) as socket:
+        events_until(socket, "hello")
+        assert client.delete(f"/api/sessions/{session}").status_code == 204
+        with pytest.raises(WebSocketDisconnect) as closed:
+            events_until(socket, "never")
+        assert closed.value.code == 1000
+
+
+def test_a_live_edit_tells_viewers_the_new_rig(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        hello = events_until(socket, "hello")
+        answer = client.patch(
+            f"/api/sessions/{session}/muscles/zygomatic_major.L", json={"strength": 1.1}
+        )
+        event = events_until(socket, "rig")
+        assert event["rig"] == answer.json()["rig"] != hello["rig"]
+        assert event["vertices"] == hello["vertices"]
+        frame_where(socket, lambda _: True)
+
+
+def test_a_viewer_that_acknowledges_keeps_getting_frames(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        first = frame_where(socket, lambda _: True)
+        socket.send_json({"type": "ack", "tick": first.tick})
+        socket.send_json({"type": "controls", "action_units": {"AU12": 1}, "fade": 0.3})
+        ticks = []
+        for _ in range(10):
+            frame = frame_where(socket, lambda _: True)
+            ticks.append(frame.tick)
+            socket.send_json({"type": "ack", "tick": frame.tick})
+        assert ticks == sorted(ticks)
+        assert ticks[-1] > ticks[0]
+
+
+def test_a_viewer_that_never_acknowledges_again_is_whole_within_a_second(
+    client: TestClient, session: str
+) -> None:
+    with connect(client, session) as socket:
+        first = frame_where(socket, lambda _: True)
+        socket.send_json({"type": "ack", "tick": first.tick})
+        socket.send_json({"type": "controls", "action_units": {"AU12": 1}})
+        frame_where(socket, lambda frame: frame.asleep and frame.tick > 0)
+
+
+def test_a_viewer_that_reads_nothing_delays_nobody(client: TestClient, session: str) -> None:
+    with connect(client, session) as idle, connect(client, session) as reader:
+        events_until(idle, "hello")
+        client.patch(
+            f"/api/sessions/{session}/controls", json={"action_units": {"AU12": 1}, "fade": 0.5}
+        )
+        asleep = threading.Event()
+
+        def read() -> None:
+            frame_where(reader, lambda frame: frame.asleep and frame.tick > 0)
+            asleep.set()
+
+        thread = threading.Thread(target=read)
+        thread.start()
+        assert asleep.wait(timeout=30)
+        thread.join()
+
+
+def test_viewers_are_counted(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        frame_where(socket, lambda _: True)
+        text = client.get("/metrics").text
+        assert "risorius_viewers 1.0" in text
+        assert "risorius_frames_sent_total" in text
+        assert "risorius_ticks_total" in text

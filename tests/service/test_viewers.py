@@ -1,0 +1,68 @@
+"""A viewer's slot: the newest frame only, and a window for those who acknowledge."""
+
+from __future__ import annotations
+
+from service.viewers import Viewer
+
+
+def test_only_the_newest_frame_waits() -> None:
+    viewer = Viewer()
+    viewer.take_frame(0)
+    for _ in range(100):
+        viewer.offer_frame()
+    assert viewer.skipped == 99
+    assert viewer.take_frame(100)
+    assert not viewer.take_frame(100)
+
+
+def test_the_window_holds_two_frames() -> None:
+    viewer = Viewer()
+    assert viewer.take_frame(1)
+    viewer.acknowledge(1)
+    for tick in (2, 3):
+        viewer.offer_frame()
+        assert viewer.take_frame(tick)
+    viewer.offer_frame()
+    assert not viewer.take_frame(4)
+    viewer.acknowledge(2)
+    assert viewer.take_frame(4)
+
+
+def test_an_old_tick_acknowledges_nothing_and_a_wrapped_one_does() -> None:
+    viewer = Viewer()
+    viewer.acknowledge(0)
+    viewer.take_frame(2**32 - 1)
+    viewer.offer_frame()
+    viewer.take_frame(2)
+    viewer.offer_frame()
+    viewer.acknowledge(2**32 - 10)
+    assert not viewer.take_frame(3)
+    viewer.acknowledge(2)
+    assert viewer.take_frame(3)
+
+
+def test_a_repeat_opens_the_window() -> None:
+    viewer = Viewer()
+    viewer.acknowledge(0)
+    for tick in (1, 2):
+        viewer.offer_frame()
+        assert viewer.take_frame(tick)
+    viewer.offer_frame()
+    assert not viewer.take_frame(3)
+    viewer.repeat_frame()
+    assert viewer.take_frame(3)
+
+
+def test_a_newer_state_replaces_an_older_one() -> None:
+    viewer = Viewer()
+    viewer.offer({"type": "state", "tick": 1})
+    viewer.offer({"type": "error"})
+    viewer.offer({"type": "state", "tick": 2})
+    assert viewer.take_events() == [{"type": "error"}, {"type": "state", "tick": 2}]
+
+
+def test_events_are_bounded() -> None:
+    viewer = Viewer()
+    for number in range(1000):
+        viewer.offer({"type": "error", "number": number})
+    assert len(viewer.take_events()) <= 64
