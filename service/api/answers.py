@@ -31,8 +31,11 @@ _MEANINGS = {
     429: "Too many requests.",
     503: "A limit is reached, or the service warms up.",
 }
+# Written out, because FastAPI would give a model the media type of the route's good answer.
+ERROR_CONTENT = {"application/json": {"schema": ErrorBody.model_json_schema()}}
 ERRORS: dict[int | str, dict[str, Any]] = {
-    status: {"model": ErrorBody, "description": meaning} for status, meaning in _MEANINGS.items()
+    status: {"description": meaning, "content": ERROR_CONTENT}
+    for status, meaning in _MEANINGS.items()
 }
 GLB_CONTENT: dict[int | str, dict[str, Any]] = {
     200: {

@@ -10,7 +10,7 @@ from starlette.responses import FileResponse
 from ..bodies import NewClip
 from ..components import Parts
 from ..errors import Refused
-from .answers import GLB, GLB_CONTENT, GlbResponse
+from .answers import ERROR_CONTENT, GLB, GLB_CONTENT, GlbResponse
 
 router = APIRouter(prefix="/api/clips", tags=["clips"])
 CSV_CONTENT: dict[int | str, dict[str, Any]] = {
@@ -34,7 +34,7 @@ def _refuse_tracks(request: Request) -> None:
     responses={
         **GLB_CONTENT,
         202: {"description": "The clip is queued; Location says where it will be."},
-        415: {"description": "Tracker files are not available yet."},
+        415: {"description": "Tracker files are not available yet.", "content": ERROR_CONTENT},
     },
 )
 async def render_clip(

@@ -22,6 +22,12 @@ def settings_in(folder: Path, **changes: object) -> Settings:
     return Settings(**values)  # type: ignore[arg-type]
 
 
+def api_routes() -> list[tuple[str, str]]:
+    """Return method and path of every documented route."""
+    paths = create_app(Settings()).openapi()["paths"]
+    return [(method.upper(), path) for path, methods in paths.items() for method in methods]
+
+
 def until(true: Callable[[], bool], *, seconds: float = 30.0) -> None:
     """Wait until `true` holds."""
     deadline = time.monotonic() + seconds

@@ -132,9 +132,7 @@ def test_a_command_that_cannot_be_obeyed_is_refused(
 
 
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999", "9" * 5000])
-def test_no_number_beyond_reason_is_accepted(
-    client: TestClient, session: str, number: str
-) -> None:
+def test_no_number_beyond_reason_is_accepted(client: TestClient, session: str, number: str) -> None:
     answer = client.patch(
         f"/api/sessions/{session}/controls",
         content=f'{{"action_units": {{"AU12": {number}}}}}',
