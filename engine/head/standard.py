@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..cache import cached_arrays
 from ..errors import UnknownName
 from .cage import Cage, build_cage
 from .fairing import faired_points
-from .head import DrawnSurface, Eye, Head
+from .head import DrawnSurface, Eye, Head, Part
 from .landmarks import landmark_vertices
 from .paint import Paint, painted
-from .parts import head_parts
+from .parts import hair_parts, head_parts
 from .patches import EYE_CENTER, EYE_RADIUS
 from .skin import LEVELS, SkinMesh, drawn_surface, skin_mesh, tissue_as_drawn
 from .storage import head_from_arrays, head_to_arrays, source_key
@@ -100,7 +101,7 @@ def _standard(level: str) -> Head:
     tissue = tissue_surface(cage, sculpture.points, face_sheet(cage))
     mesh = skin_mesh(cage, limit, sculpture.points, LEVELS[level])
     drawn = drawn_surface(cage, limit, mesh, sculpture.paint, tissue.cage_points, sculpture.eyes)
-    return _assembled("standard", sculpture, tissue, mesh, drawn)
+    return _assembled("standard", sculpture, tissue, mesh, drawn, hair_parts(drawn))
 
 
 def _paper() -> Head:
@@ -116,7 +117,29 @@ def _paper() -> Head:
         cage_faces=tissue.triangle_faces,
     )
     drawn = tissue_as_drawn(cage, mesh, sculpture.paint, sculpture.eyes)
-    return _assembled("paper", sculpture, tissue, mesh, drawn)
+    return _assembled("paper", sculpture, tissue, mesh, drawn, _skullcap(sculpture, tissue))
+
+
+def _skullcap(sculpture: Sculpture, tissue: TissueSurface) -> list[Part]:
+    """Return what the paper's mask leaves out, as rigid parts: back of the head, neck, hair."""
+    cage = sculpture.cage
+    mesh = skin_mesh(cage, sculpture.limit, sculpture.points, 0)
+    whole = drawn_surface(
+        cage, sculpture.limit, mesh, sculpture.paint, tissue.cage_points, sculpture.eyes
+    )
+    left_out = whole.triangles[~np.isin(mesh.cage_faces, tissue.triangle_faces)]
+    used, renumbered = np.unique(left_out, return_inverse=True)
+    back = Part(
+        name="scalp",
+        vertices=whole.vertices[used],
+        normals=whole.normals[used],
+        triangles=renumbered.reshape(-1, 3),
+        colors=whole.colors[used],
+        material="skin",
+        follows="skull",
+    )
+    still = replace(whole, map=sp.csr_array((len(whole.vertices), len(tissue.cage_points))))
+    return [back, *hair_parts(still)]
 
 
 def _assembled(
@@ -125,6 +148,7 @@ def _assembled(
     tissue: TissueSurface,
     mesh: SkinMesh,
     drawn: DrawnSurface,
+    hair: Sequence[Part],
 ) -> Head:
     cage = sculpture.cage
     sided = cage.sided_names
@@ -145,7 +169,7 @@ def _assembled(
         follow=tissue.follow,
         follow_jaw=tissue.follow_jaw,
         drawn=drawn,
-        parts=head_parts(drawn, lid_edge),
+        parts=(*head_parts(drawn, lid_edge), *hair),
         eyes=sculpture.eyes,
         landmarks=landmark_vertices(cage, mesh.indices),
     )

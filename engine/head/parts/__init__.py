@@ -14,7 +14,7 @@ from .tongue import tongue_part
 
 
 def head_parts(skin: DrawnSurface, lid_edge: FloatArray) -> tuple[Part, ...]:
-    """Return every part of the built-in head, fitted to its drawn skin.
+    """Return every part of the built-in head but its hair, fitted to its drawn skin.
 
     Args:
         skin: The drawn skin.
@@ -27,8 +27,7 @@ def head_parts(skin: DrawnSurface, lid_edge: FloatArray) -> tuple[Part, ...]:
         tongue_part(),
         brows_part(skin),
         lashes_part(skin, lid_edge),
-        *hair_parts(skin),
     )
 
 
-__all__ = ["brow_line", "head_parts"]
+__all__ = ["brow_line", "hair_parts", "head_parts"]

@@ -28,14 +28,9 @@ RISE_TOP, RISE_SIDE = 4.2, 1.3
 
 
 def hair_parts(skin: DrawnSurface) -> list[Part]:
-    """Return the tufts: "hairline" rides the skin that moves, "hair" the rest of the scalp.
-
-    A skin with no hair has neither.
-    """
+    """Return the tufts: "hairline" rides the skin that moves, "hair" sits on the still scalp."""
     noise = np.random.default_rng(31)
     triangle, weights = _scattered(skin, noise)
-    if not len(triangle):
-        return []
     corners = skin.triangles[triangle]
     strands = _combed(skin, corners, weights, noise)
     moves = abs(skin.map).sum(axis=1)[corners].max(axis=1) > MOVING_WEIGHT
@@ -66,12 +61,12 @@ def _combed(
 
     away = root - WHORL + [0, -8.0, 10.0]  # combed a little forward and down
     away /= np.linalg.norm(away, axis=1, keepdims=True)
-    away += noise.normal(0, 0.28, (count, 3))
+    away += noise.normal(0, 0.22, (count, 3))
     tangent = away - normal * (away * normal).sum(axis=1, keepdims=True)
     tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-9)
 
     top = smoothstep(25, 80, root[:, 1])
-    thin = 0.45 + 0.55 * smoothstep(0.1, 0.9, fullness)
+    thin = 0.38 + 0.62 * smoothstep(0.1, 0.9, fullness)
     length = (LENGTH_SIDE + (LENGTH_TOP - LENGTH_SIDE) * top) * noise.uniform(0.7, 1.15, count)
     rise = (RISE_SIDE + (RISE_TOP - RISE_SIDE) * top) * noise.uniform(0.5, 1.25, count)
     along = np.linspace(0, 1, POINTS)
