@@ -10,9 +10,10 @@ import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
 from ..clip import Clip
-from .basis import SHARE_DROPPED, Motion, MotionBasis, fit_basis
+from .basis import SHARE_DROPPED, MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder, metres
 from .drawn import DrawnFace
+from .error import Motion
 from .pose import RigidMotion, motions
 from .scene import Pivot, add_pivots, add_rigid_parts, file_extras
 from .skin import add_skin, turn_of
