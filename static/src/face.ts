@@ -63,11 +63,14 @@ interface RidingStrands {
 
 const MILLIMETRES = 1000;
 const DEFAULT_GRID = 2e-5;
-/** Everything wet below this height is in the mouth; light fades between lips and throat [m, head frame]. */
+/** What is wet below this height is in the mouth; light fades between lips and throat [m, head frame]. */
 const MOUTH_TOP = -0.04;
-const LIPS = 0.098;
-const THROAT = 0.06;
-const DARKEST = 0.16;
+const LIPS = 0.094;
+const THROAT = 0.045;
+const DARKEST = 0.2;
+/** A face that reaches lower than this [m] has a neck, which fades over so many mm. */
+const NECK_BELOW = -0.14;
+const NECK_FADE = 58;
 const RADIANS = Math.PI / 180;
 
 export class Face {
@@ -177,23 +180,24 @@ export class Face {
   }
 
   /**
-   * Take on a pose; call `Scene.invalidate` after it.
+   * Take on a pose, and tell whether it differs from the one before.
    * @throws Error when the pose is of another surface.
    */
-  apply(pose: FacePose): void {
+  apply(pose: FacePose): boolean {
     const points = this.tissueRest.length / 3;
     if (pose.vertexCount !== points) {
       throw new Error(`The frame has ${pose.vertexCount} points, the surface ${points}.`);
     }
-    if (this.surface.apply(pose.moved, pose.displacements, this.grid)) this.refreshSkin();
-    this.turn('head', rotation(pose.head[0], pose.head[1], pose.head[2]));
-    this.turn('eye.L', rotation(pose.gaze[0], pose.gaze[1], 0));
-    this.turn('eye.R', rotation(pose.gaze[2], pose.gaze[3], 0));
-    this.turn('jaw', new Quaternion(...pose.jawQuaternion));
-    this.nodes
-      .get('jaw')
-      ?.position.set(...pose.jawOffset)
-      .add(this.jawRest);
+    const moved = this.surface.apply(pose.moved, pose.displacements, this.grid);
+    if (moved) this.refreshSkin();
+    const turned = [
+      this.turn('head', rotation(pose.head[0], pose.head[1], pose.head[2])),
+      this.turn('eye.L', rotation(pose.gaze[0], pose.gaze[1], 0)),
+      this.turn('eye.R', rotation(pose.gaze[2], pose.gaze[3], 0)),
+      this.turn('jaw', new Quaternion(...pose.jawQuaternion)),
+      this.slideJaw(pose.jawOffset),
+    ];
+    return moved || turned.includes(true);
   }
 
   /** A streamed point, by name or index, where it is drawn [mm, head frame]. */
@@ -249,8 +253,19 @@ export class Face {
     }
   }
 
-  private turn(name: string, rotated: Quaternion): void {
-    this.nodes.get(name)?.quaternion.copy(rotated);
+  private turn(name: string, rotated: Quaternion): boolean {
+    const node = this.nodes.get(name);
+    if (node === undefined || node.quaternion.equals(rotated)) return false;
+    node.quaternion.copy(rotated);
+    return true;
+  }
+
+  private slideJaw(offset: readonly [number, number, number]): boolean {
+    const jaw = this.nodes.get('jaw');
+    const place = new Vector3(...offset).add(this.jawRest);
+    if (jaw === undefined || jaw.position.equals(place)) return false;
+    jaw.position.copy(place);
+    return true;
   }
 }
 
@@ -273,46 +288,54 @@ function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
 
 /** Give every mesh its material, its shadow and its place in the drawing order. */
 function dress(root: Object3D, skinRest: Float32Array): void {
-  const hasNeck = lowest(skinRest) < -0.15;
+  root.updateMatrixWorld(true);
+  const neckFade = fadeOf(skinRest);
   for (const mesh of meshes(root)) {
     const kind = (mesh.userData.material as string | undefined) ?? 'skin';
+    const isFace = mesh.userData.role === 'skin';
+    const inMouth = (kind === 'wet' || kind === 'teeth') && isInMouth(mesh);
+    if (inMouth) darkenThroat(mesh);
     mesh.visible = mesh.userData.role !== 'tissue';
-    mesh.material = createMaterial(
-      kind,
-      mesh.geometry.hasAttribute('color'),
-      hasNeck && mesh.userData.role === 'skin',
-    );
+    mesh.material = createMaterial(kind, {
+      vertexColors: mesh.geometry.hasAttribute('color'),
+      inMouth,
+      neckFade: isFace ? neckFade : null,
+    });
     mesh.castShadow = kind !== 'cornea';
     mesh.receiveShadow = kind !== 'cornea';
     mesh.frustumCulled = false;
     // The skin is blended at the neck, so it must come after what is opaque and before the corneas.
-    mesh.renderOrder = kind === 'cornea' ? 2 : mesh.userData.role === 'skin' ? 1 : 0;
-    if (kind === 'wet' || kind === 'teeth') darkenMouth(mesh, root);
+    mesh.renderOrder = kind === 'cornea' ? 2 : isFace ? 1 : 0;
     if (kind === 'skin') {
       mesh.geometry.setAttribute('restPosition', mesh.geometry.getAttribute('position').clone());
     }
   }
 }
 
-/** Light hardly reaches into the mouth, and a shadow map alone does not show it: darker towards the throat. */
-function darkenMouth(mesh: Mesh<BufferGeometry>, root: Object3D): void {
+function isInMouth(mesh: Mesh<BufferGeometry>): boolean {
+  mesh.geometry.computeBoundingSphere();
+  return mesh.localToWorld(mesh.geometry.boundingSphere!.center.clone()).y < MOUTH_TOP;
+}
+
+/** Light hardly reaches the throat, and a shadow map alone does not show it. */
+function darkenThroat(mesh: Mesh<BufferGeometry>): void {
   const positions = mesh.geometry.getAttribute('position');
   const colors = mesh.geometry.getAttribute('color') as BufferAttribute | undefined;
   if (colors === undefined) return;
   const at = new Vector3();
-  root.updateMatrixWorld(true);
   for (let i = 0; i < positions.count; i++) {
-    at.fromBufferAttribute(positions, i).applyMatrix4(mesh.matrixWorld);
-    if (at.y > MOUTH_TOP) continue;
+    mesh.localToWorld(at.fromBufferAttribute(positions, i));
     const light = MathUtils.lerp(DARKEST, 1, MathUtils.smoothstep(at.z, THROAT, LIPS));
     colors.setXYZ(i, colors.getX(i) * light, colors.getY(i) * light, colors.getZ(i) * light);
   }
 }
 
-function lowest(positions: Float32Array): number {
-  let y = Infinity;
-  for (let i = 1; i < positions.length; i += 3) y = Math.min(y, positions[i]!);
-  return y;
+/** Heights [mm] between which the skin fades above the cut of its neck; a mask without a neck has none. */
+function fadeOf(positions: Float32Array): readonly [number, number] | null {
+  let lowest = Infinity;
+  for (let i = 1; i < positions.length; i += 3) lowest = Math.min(lowest, positions[i]!);
+  if (lowest > NECK_BELOW) return null;
+  return [lowest * MILLIMETRES + 2, lowest * MILLIMETRES + NECK_FADE];
 }
 
 /** Put an array in place of an attribute, for values that change from frame to frame. */

@@ -23,7 +23,7 @@ export function createLights(): Group {
   const key = new DirectionalLight(0xfff3e6, 2.5);
   key.position.set(-0.22, 0.24, 0.36);
   castSoftShadow(key);
-  const fill = new DirectionalLight(0xcad8ff, 0.62);
+  const fill = new DirectionalLight(0xcad8ff, 0.55);
   fill.position.set(0.36, 0.04, 0.24);
   const rimLeft = new DirectionalLight(0xdfe8ff, 1.5);
   rimLeft.position.set(0.3, 0.2, -0.26);
@@ -35,7 +35,7 @@ export function createLights(): Group {
     fill,
     rimLeft,
     rimRight,
-    new HemisphereLight(0xdfe8ff, 0x6b4436, 0.6),
+    new HemisphereLight(0xdfe8ff, 0x6b4436, 0.45),
   );
   return lights;
 }

@@ -69,7 +69,7 @@ const scene = new Scene(element('face') as HTMLCanvasElement, {
   orbit: !page.bare,
   pixelRatio: page.pixelRatio,
   view: page.view,
-  beforeDraw: applyNewestFrame,
+  update: applyNewestFrame,
 });
 const connection = new Connection({
   locate: locateStream,
@@ -83,7 +83,7 @@ const connection = new Connection({
     viewer.detail = detail;
   },
   onFrameReady: () => {
-    scene.invalidate();
+    scene.wake();
   },
 });
 const throttle = new Throttle((groups) => {
@@ -163,19 +163,22 @@ function takeState(state: FaceState): void {
   if (emotion !== undefined) viewer.emotionIntensity = emotion.intensity;
 }
 
-function applyNewestFrame(): void {
-  if (face === null) return;
+/** Tells whether the face changed. */
+function applyNewestFrame(): boolean {
+  if (face === null) return false;
   const frame = connection.takeFrame();
-  if (frame === null) return;
+  if (frame === null) return false;
+  let changed: boolean;
   try {
-    face.apply(frame);
+    changed = face.apply(frame);
   } catch (error) {
-    viewer.notice = error instanceof Error ? error.message : 'A frame cannot be read.';
-    return;
+    viewer.notice = error instanceof Error ? error.message : 'A frame cannot be drawn.';
+    return false;
   }
   tick = frame.tick;
   viewer.asleep = frame.asleep;
   viewer.tickRate = rate.at(frame.tick, performance.now());
+  return changed;
 }
 
 /** Hold a unit either as a whole or by its sides, never both: AU12 beside L12 would say two things of the left. */

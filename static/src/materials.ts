@@ -11,12 +11,23 @@ import {
 } from 'three';
 import { makeSkin } from './skin-shader';
 
-/** The neck dissolves into the background between these heights [mm], where the mesh is cut. */
-const NECK_FADE = new Vector2(-181, -138);
-/** A fade that never begins, for faces without a neck. */
-const NO_FADE = new Vector2(-2000, -1999);
+/** Where a surface lies, as far as it matters to its light. */
+export interface Setting {
+  vertexColors: boolean;
+  /** In the mouth, where the studio's soft boxes are not mirrored. */
+  inMouth: boolean;
+  /** The neck dissolves into the background between these heights [mm]; null where there is no cut to hide. */
+  neckFade: readonly [number, number] | null;
+}
 
-export function createMaterial(kind: string, vertexColors: boolean, hasNeck: boolean): Material {
+/** A fade that never begins. */
+const NO_FADE = [-2000, -1999] as const;
+
+export function createMaterial(
+  kind: string,
+  { vertexColors, inMouth, neckFade }: Setting,
+): Material {
+  const envMapIntensity = inMouth ? 0.25 : 1;
   switch (kind) {
     case 'eye':
       return new MeshPhysicalMaterial({
@@ -25,24 +36,25 @@ export function createMaterial(kind: string, vertexColors: boolean, hasNeck: boo
         specularIntensity: 0.5,
         clearcoat: 0.5,
         clearcoatRoughness: 0.06,
-        envMapIntensity: 0.9,
       });
     case 'cornea':
       return cornea();
     case 'wet':
       return new MeshPhysicalMaterial({
         vertexColors,
-        roughness: 0.3,
-        clearcoat: 0.55,
-        clearcoatRoughness: 0.22,
+        roughness: 0.32,
+        specularIntensity: 0.6,
+        clearcoat: 0.3,
+        clearcoatRoughness: 0.25,
+        envMapIntensity,
       });
     case 'teeth':
       return new MeshPhysicalMaterial({
         vertexColors,
-        roughness: 0.28,
-        clearcoat: 0.35,
-        clearcoatRoughness: 0.15,
-        envMapIntensity: 0.8,
+        roughness: 0.3,
+        clearcoat: 0.25,
+        clearcoatRoughness: 0.2,
+        envMapIntensity,
       });
     case 'hair':
       return new MeshStandardMaterial({
@@ -52,11 +64,11 @@ export function createMaterial(kind: string, vertexColors: boolean, hasNeck: boo
         side: DoubleSide,
       });
     default:
-      return skin(vertexColors, hasNeck);
+      return skin(vertexColors, neckFade);
   }
 }
 
-function skin(vertexColors: boolean, hasNeck: boolean): Material {
+function skin(vertexColors: boolean, fade: Setting['neckFade']): Material {
   const material = new MeshPhysicalMaterial({
     vertexColors,
     color: vertexColors ? 0xffffff : 0xd9a58a,
@@ -65,9 +77,9 @@ function skin(vertexColors: boolean, hasNeck: boolean): Material {
     sheen: 0.22,
     sheenRoughness: 0.45,
     sheenColor: new Color(0.9, 0.48, 0.38),
-    transparent: hasNeck,
+    transparent: fade !== null,
   });
-  const neckFade = { value: hasNeck ? NECK_FADE : NO_FADE };
+  const neckFade = { value: new Vector2(...(fade ?? NO_FADE)) };
   material.onBeforeCompile = (program) => {
     makeSkin(program, neckFade);
   };

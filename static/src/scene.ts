@@ -12,6 +12,8 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { createBackdrop, createEnvironment, createLights } from './lights';
 
+/** Lashes are thinner than a pixel: below this they fall apart into dots. */
+const LEAST_PIXEL_RATIO = 1.5;
 /** Share of the camera's way around the face that the lights go with it. */
 const LIGHTS_FOLLOW = 0.8;
 /** Height of the bar over the stage, whose half the head makes room for [CSS px]. */
@@ -32,8 +34,8 @@ export interface SceneOptions {
   orbit: boolean;
   pixelRatio: number | null;
   view: string;
-  /** Called before each drawing, e.g. to apply the newest frame. */
-  beforeDraw: () => void;
+  /** Take in what is new, e.g. the newest frame; tells whether it changed anything that is drawn. */
+  update: () => boolean;
 }
 
 export class Scene {
@@ -48,6 +50,7 @@ export class Scene {
   /** The camera stands where a view put it, so that resizing may frame it anew. */
   private framed = true;
   private scheduled = false;
+  private changed = false;
   private waiting: (() => void)[] = [];
 
   constructor(
@@ -64,10 +67,12 @@ export class Scene {
     this.renderer.toneMappingExposure = 1.0;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
-    this.renderer.setPixelRatio(options.pixelRatio ?? Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(
+      options.pixelRatio ?? Math.min(Math.max(window.devicePixelRatio, LEAST_PIXEL_RATIO), 2),
+    );
     this.scene.add(createBackdrop(), this.lights);
     this.scene.environment = createEnvironment(this.renderer);
-    this.scene.environmentIntensity = 0.4;
+    this.scene.environmentIntensity = 0.36;
     this.controls = options.orbit ? this.createControls() : null;
     this.observer = new ResizeObserver(() => {
       this.resize();
@@ -95,13 +100,20 @@ export class Scene {
     this.invalidate();
   }
 
-  /** Ask for a drawing with the next animation frame. */
+  /** Something that is drawn has changed: draw with the next animation frame. */
   invalidate(): void {
+    this.changed = true;
+    this.wake();
+  }
+
+  /** There may be something new: ask `update` with the next animation frame, and draw if it says so. */
+  wake(): void {
     if (this.scheduled) return;
     this.scheduled = true;
     requestAnimationFrame(() => {
       this.scheduled = false;
-      this.draw();
+      const updated = this.options.update();
+      if (updated || this.changed) this.draw();
     });
   }
 
@@ -114,7 +126,7 @@ export class Scene {
   }
 
   private draw(): void {
-    this.options.beforeDraw();
+    this.changed = false;
     this.turnLights();
     this.renderer.render(this.scene, this.camera);
     this.framesDrawn++;
@@ -133,7 +145,7 @@ export class Scene {
   private createControls(): OrbitControls {
     const controls = new OrbitControls(this.camera, this.canvas);
     controls.target.copy(TARGET);
-    controls.minDistance = 0.25;
+    controls.minDistance = 0.36;
     controls.maxDistance = 2.2;
     controls.enablePan = false;
     controls.rotateSpeed = 0.7;

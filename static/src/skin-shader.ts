@@ -56,7 +56,9 @@ float strandShade = stubble(vRest + 60.0);
 roughnessFactor += (pores(vRest * 0.5 + 50.0) - 0.5) * 0.14;
 roughnessFactor = mix(roughnessFactor, 0.9, vHair);
 diffuseColor.rgb *= mix(1.0, 0.45 + 0.95 * strandShade, vHair);
-diffuseColor.a *= smoothstep(neckFade.x, neckFade.y, vRest.y);
+float aboveNeck = smoothstep(neckFade.x, neckFade.y, vRest.y);
+diffuseColor.a *= aboveNeck;
+diffuseColor.rgb *= 0.15 + 0.85 * aboveNeck;
 `;
 
 /** Hair is no sheet of skin: almost no highlight of its own. */
