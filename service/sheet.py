@@ -1,0 +1,165 @@
+"""Contact sheets: every action unit and emotion, as the viewer draws them, on one picture."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from PIL import Image, ImageDraw, ImageFont
+
+from .app import create_app
+from .browser import NoBrowser, chromium
+from .server import running
+from .settings import Settings
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+Show = Callable[[str, float], None]
+VIEWS = ("front", "three-quarter", "profile")
+_TIMEOUT_MS = 60_000
+_LABEL_SHARE = 0.09
+_BACKGROUND = (24, 25, 28)
+_INK = (226, 226, 222)
+_SETTLED = "t => window.__viewer.ready && window.__viewer.asleep && window.__viewer.tick > t"
+
+
+class SheetRefused(Exception):
+    """A sheet that cannot be drawn; the message is one sentence."""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One picture: its label, and what is asked of the face.
+
+    Attributes:
+        label: Written under the picture.
+        controls: Body of a PUT to the puppet layer.
+        emotion: Label of an emotion instead.
+    """
+
+    label: str
+    controls: dict[str, Any]
+    emotion: str | None = None
+
+
+def draw_sheet(
+    output: Path,
+    *,
+    rig: str,
+    columns: int,
+    size: int,
+    view: str,
+    only: Sequence[str],
+    show: Show,
+) -> int:
+    """Write the sheet and return how many pictures it has.
+
+    Args:
+        output: PNG file.
+        rig: Name or id of a rig.
+        columns: Pictures in a row.
+        size: Side of a picture [pixels].
+        view: One of `VIEWS`.
+        only: Labels to draw; all when empty.
+        show: Told what is being done, and the share of the work done.
+
+    Raises:
+        SheetRefused: If the viewer or Chromium is missing, or a name is not known.
+    """
+    if view not in VIEWS:
+        raise SheetRefused(f"There is no view {view!r}; it is one of {', '.join(VIEWS)}.")
+    if not output.resolve().parent.is_dir():
+        raise SheetRefused(f"The folder {output.parent} does not exist; make it first.")
+    if not (Settings().viewer_dir / "index.html").is_file():
+        raise SheetRefused("The viewer is not built: run `npm ci && npm run build` in static/.")
+    with tempfile.TemporaryDirectory(prefix="risorius-sheet-") as folder:
+        settings = Settings(data_dir=Path(folder), host="127.0.0.1", api_keys=())
+        try:
+            with running(create_app(settings), settings) as url, chromium() as browser:
+                page = browser.new_page(viewport={"width": size, "height": size})
+                pictures = _photograph(page, url, rig=rig, view=view, only=only, show=show)
+        except NoBrowser as error:
+            raise SheetRefused(str(error)) from error
+    tile(pictures, columns=columns, size=size).save(output)
+    return len(pictures)
+
+
+def tile(pictures: Sequence[tuple[str, bytes]], *, columns: int, size: int) -> Image.Image:
+    """Return one picture of labelled pictures, row by row."""
+    columns = min(columns, max(1, len(pictures)))
+    label_height = max(14, round(size * _LABEL_SHARE))
+    rows = -(-len(pictures) // columns)
+    sheet = Image.new("RGB", (columns * size, rows * (size + label_height)), _BACKGROUND)
+    draw = ImageDraw.Draw(sheet)
+    font = ImageFont.load_default(size=round(label_height * 0.7))
+    for index, (label, png) in enumerate(pictures):
+        left, top = index % columns * size, index // columns * (size + label_height)
+        sheet.paste(Image.open(io.BytesIO(png)).convert("RGB").resize((size, size)), (left, top))
+        middle = (left + size / 2, top + size + label_height / 2)
+        draw.text(middle, label, fill=_INK, font=font, anchor="mm")
+    return sheet
+
+
+def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
+    """Return the poses to draw: rest, each action unit at 1, each emotion; or those of `only`.
+
+    Args:
+        rig: What the API says of the rig.
+        only: Names of units or emotions, or FACS strings.
+    """
+    poses = {"rest": Pose("rest", {})}
+    for unit in rig["action_units"]:
+        label = f"{unit['name']} {unit['title']}"
+        poses[unit["name"]] = Pose(label, {"action_units": {unit["name"]: 1.0}})
+    for emotion in rig["emotions"]:
+        label = f"{emotion['name']} {emotion['recipe']}"
+        poses[emotion["name"]] = Pose(label, {}, emotion["name"])
+    if not only:
+        return list(poses.values())
+    return [poses.get(name, Pose(name, {"facs": name})) for name in only]
+
+
+def _photograph(
+    page: Page, url: str, *, rig: str, view: str, only: Sequence[str], show: Show
+) -> list[tuple[str, bytes]]:
+    """Put each pose on a face and take its picture once it has settled."""
+    show("building the rig", 0.0)
+    page.set_default_timeout(_TIMEOUT_MS)
+    described = _call(page, "GET", f"{url}/api/rigs/{rig}")
+    poses = poses_of(described, only)
+    session = _call(page, "POST", f"{url}/api/sessions", {"rig": rig})["id"]
+    show("opening the viewer", 0.0)
+    page.goto(f"{url}/?session={session}&bare=1&view={view}&dpr=1")
+    page.wait_for_function(_SETTLED, arg=-1)
+    pictures = []
+    for index, pose in enumerate(poses):
+        show(pose.label, index / len(poses))
+        tick = _command(page, f"{url}/api/sessions/{session}", pose)
+        page.wait_for_function(_SETTLED, arg=tick)
+        page.evaluate("() => window.__viewer.render()")
+        pictures.append((pose.label, page.screenshot()))
+    return pictures
+
+
+def _command(page: Page, session: str, pose: Pose) -> int:
+    """Ask the pose of the face, and return the tick of the command."""
+    held = {"fade": 0.15}
+    emptied = _call(page, "PUT", f"{session}/controls", {**held, "layer": "emotion"})
+    answer = _call(page, "PUT", f"{session}/controls", {**held, **pose.controls})
+    if pose.emotion is not None:
+        body = {"label": pose.emotion, "fade_in": 0.15}
+        answer = _call(page, "POST", f"{session}/emotions", body)
+    return int(max(emptied["tick"], answer["tick"]))
+
+
+def _call(page: Page, method: str, url: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+    answer = page.request.fetch(url, method=method, data=body, timeout=_TIMEOUT_MS)
+    content: dict[str, Any] = answer.json()
+    if not answer.ok:
+        raise SheetRefused(f"This cannot be drawn: {content['message']}.")
+    return content

@@ -1,0 +1,110 @@
+"""The viewer in a browser: a slider is moved, and the face that is drawn smiles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+from service.app import create_app  # noqa: E402
+from service.browser import NoBrowser, chromium  # noqa: E402
+from service.server import running  # noqa: E402
+from service.settings import Settings  # noqa: E402
+
+pytestmark = pytest.mark.browser
+TIMEOUT_MS = 60_000
+CORNERS = ("ch.L", "ch.R")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[playwright_api.Browser]:
+    """Chromium; without it these tests skip."""
+    try:
+        with chromium() as started:
+            yield started
+    except NoBrowser as error:
+        pytest.skip(str(error))
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A real server with the built viewer."""
+    folder = tmp_path_factory.mktemp("browser")
+    settings = Settings(data_dir=folder)
+    if not (settings.viewer_dir / "index.html").is_file():
+        pytest.fail("the viewer is not built: run `npm ci && npm run build` in static/")
+    with running(create_app(settings), settings) as address:
+        yield address
+
+
+@pytest.fixture
+def page(browser: playwright_api.Browser) -> Iterator[playwright_api.Page]:
+    """A small page that fails the test if a script fails."""
+    page = browser.new_page(viewport={"width": 320, "height": 240})
+    page.set_default_timeout(TIMEOUT_MS)
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    yield page
+    page.close()
+    assert errors == []
+
+
+def height(page: playwright_api.Page, landmark: str) -> float:
+    """Return how high the drawn landmark is now, in metres."""
+    return float(
+        page.evaluate(
+            "name => window.__viewer.drawnVertex(window.__viewer.landmarks[name])[1]", landmark
+        )
+    )
+
+
+def settle(page: playwright_api.Page, after: int = -1) -> int:
+    """Wait until the face sleeps, later than a tick, and is drawn; return its tick."""
+    page.wait_for_function(
+        "t => window.__viewer?.ready && window.__viewer.asleep && window.__viewer.tick > t",
+        arg=after,
+    )
+    page.evaluate("() => window.__viewer.render()")
+    return int(page.evaluate("() => window.__viewer.tick"))
+
+
+def test_a_slider_lifts_the_streamed_and_the_drawn_mouth_corners(
+    page: playwright_api.Page, url: str
+) -> None:
+    page.goto(url)
+    tick = settle(page)
+    assert page.evaluate("() => window.__viewer.connected && window.__viewer.framesDrawn > 0")
+    rest = {name: height(page, name) for name in CORNERS}
+    session = page.evaluate("() => window.__viewer.session")
+    moved = page.evaluate("() => window.__viewer.point('M1_5.L')[1]")
+    slider = page.get_by_role("slider", name="AU12")
+    slider.fill("1")
+    settle(page, tick)
+    held = page.request.get(f"{url}/api/sessions/{session}").json()["layers"]
+    assert held["puppet"]["action_units"]["AU12"] == pytest.approx(1.0)
+    assert page.evaluate("() => window.__viewer.point('M1_5.L')[1]") > moved + 2e-3
+    for name in CORNERS:
+        assert height(page, name) > rest[name] + 2e-3, name
+
+
+def test_another_client_s_command_is_drawn_too(page: playwright_api.Page, url: str) -> None:
+    session = page.request.post(f"{url}/api/sessions", data={}).json()["id"]
+    page.goto(f"{url}/?session={session}&bare=1&view=three-quarter")
+    tick = settle(page)
+    rest = height(page, "ch.L")
+    answer = page.request.post(f"{url}/api/sessions/{session}/emotions", data={"label": "joy"})
+    assert answer.ok
+    settle(page, tick)
+    assert height(page, "ch.L") > rest + 1e-3
+
+
+def test_the_paper_s_face_opens(page: playwright_api.Page, url: str, tmp_path: Path) -> None:
+    page.goto(f"{url}/?rig=paper&bare=1")
+    settle(page)
+    rig = page.request.get(f"{url}/api/rigs/paper").json()["id"]
+    assert page.evaluate("() => window.__viewer.rig") == rig
+    picture = page.screenshot(path=tmp_path / "paper.png")
+    assert len(set(picture)) > 1
