@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from glb_tools import assert_valid
 from small_face import small_rig
 
 from engine.gltf import surface_to_glb
+from engine.head.head import LidContact
 
 
 @pytest.fixture(scope="module")
@@ -107,3 +109,22 @@ def test_file_says_what_it_is(rig: Any, glb: Glb) -> None:
 
 def test_khronos_validator_accepts_it(rig: Any, tmp_path: Path) -> None:
     assert_valid(tmp_path, surface=surface_to_glb(rig))
+
+
+def test_bare_head_has_neither_eyes_nor_lids(rig: Any, tmp_path: Path) -> None:
+    """A head read from a file: skin and tissue only."""
+    nothing = np.zeros(0, np.int64)
+    drawn = replace(rig.head.drawn, lids=LidContact(nothing, nothing, np.zeros(0)))
+    bare = small_rig()
+    bare.head = replace(rig.head, drawn=drawn, eyes=(), parts=(), landmarks={})
+    data = surface_to_glb(bare)
+    assert_valid(tmp_path, bare=data)
+    assert {node["name"] for node in Glb(data).json["nodes"]} == {
+        "risorius",
+        "head",
+        "skull",
+        "jaw",
+        "tissue",
+        "skin",
+    }
+    assert "lids" not in extras(Glb(data), "skin")
