@@ -32,9 +32,9 @@ PAIRED = {
     "pi": "E1_12",  # middle of the lower lid's edge
     "al": "A7",  # widest point of the nose
     "ch": "M1_5",  # corner of the mouth
-    "zy": "W10_1",  # cheekbone
+    "zy": "W9_2",  # cheekbone
     "go": "W14_1",  # angle of the jaw
-    "eu": "W3_6",  # widest point of the head
+    "eu": "W4_4",  # widest point of the head
 }
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.csgraph import breadth_first_order
 from scipy.spatial import cKDTree
 
 from ..arrays import BoolArray, FloatArray, IntArray
@@ -180,16 +181,7 @@ def _check_manifold(faces: IntArray, count: int) -> None:
 
 def _facing_outwards(points: FloatArray, faces: IntArray, topology: Topology) -> IntArray:
     """Return the faces wound alike and outwards, or raise InvalidHead for a one-sided surface."""
-    starts, ends = faces, np.roll(faces, -1, axis=1)
-    _, counts = np.unique(starts.ravel() * len(points) + ends.ravel(), return_counts=True)
-    if counts.max() > 1:
-        import trimesh
-
-        mesh = trimesh.Trimesh(points, faces, process=False)
-        trimesh.repair.fix_winding(mesh)  # type: ignore[no-untyped-call]
-        faces = np.array(mesh.faces, dtype=np.int64)
-        if not mesh.is_winding_consistent:
-            raise InvalidHead("the mesh is one-sided: its triangles cannot all face outwards")
+    faces = wound_alike(faces, topology)
     a, b, c = (points[faces[:, corner]] for corner in range(3))
     area = np.cross(b - a, c - a)
     if topology.boundary_edges.any():
@@ -197,6 +189,39 @@ def _facing_outwards(points: FloatArray, faces: IntArray, topology: Topology) ->
     else:
         outward = np.einsum("ti,ti->", a - points.mean(axis=0), area)
     return faces if outward >= 0 else faces[:, ::-1].copy()
+
+
+def wound_alike(faces: IntArray, topology: Topology) -> IntArray:
+    """Return connected triangles (t, 3) turned so that neighbours run their edge in opposite ways.
+
+    Raises:
+        InvalidHead: The surface is one-sided, so that no such winding exists.
+    """
+    edges = topology.face_edges[:, :3].ravel()
+    forward = (faces < np.roll(faces, -1, axis=1)).ravel()
+    by_edge = np.argsort(edges, kind="stable")
+    shared = topology.face_count_of_edge[edges[by_edge]] == 2
+    first, second = by_edge[shared].reshape(-1, 2).T
+    disagree = forward[first] == forward[second]
+    flip = _flips(first // 3, second // 3, disagree, len(faces))
+    if (disagree != (flip[first // 3] ^ flip[second // 3])).any():
+        raise InvalidHead("the mesh is one-sided: its triangles cannot all face outwards")
+    return np.where(flip[:, None], faces[:, ::-1], faces)
+
+
+def _flips(first: IntArray, second: IntArray, disagree: BoolArray, count: int) -> BoolArray:
+    """Return which triangles to turn, walking from the first one over pairs of neighbours."""
+    # An entry of 2 tells "disagree" from 1, "agree"; 0 would be no neighbour at all.
+    value = 1 + disagree.astype(float)
+    graph = sp.csr_array((value, (first, second)), shape=(count, count))
+    graph = sp.csr_array(graph.maximum(graph.T))
+    order, previous = breadth_first_order(graph, 0, directed=False)
+    flip = np.zeros(count, dtype=bool)
+    turned = np.zeros(count, dtype=bool)
+    turned[order[1:]] = np.asarray(graph[order[1:], previous[order[1:]]]).ravel() > 1
+    for triangle in order[1:]:
+        flip[triangle] = flip[previous[triangle]] ^ turned[triangle]
+    return flip
 
 
 def _held(points: FloatArray, topology: Topology) -> BoolArray:

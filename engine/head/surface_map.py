@@ -25,7 +25,8 @@ def surface_map(
 
     Exact subdivision is limit mask times subdivision times the inverse of interpolation; the
     inverse reaches everywhere but decays by about 4 with each ring, so its far tail is left out.
-    Cage points outside the tissue (scalp, neck) count as unmoved.
+    Cage points outside the tissue (scalp, neck) count as unmoved. Both halves carry the same
+    weights.
 
     Args:
         limit: The interpolating surface.
@@ -33,7 +34,35 @@ def surface_map(
         drawn_vertices: Their indices in that level, shape (d,).
         surface_points: Cage index of each tissue point, shape (s,).
     """
-    return pruned(exact_map(limit, level, drawn_vertices, surface_points))
+    short = pruned(exact_map(limit, level, drawn_vertices, surface_points))
+    row_mirror = _places(limit.levels[level].mirror, drawn_vertices)
+    column_mirror = _places(limit.levels[0].mirror, surface_points)
+    return _mirrored(short, row_mirror, column_mirror)
+
+
+def _places(mirror: IntArray, chosen: IntArray) -> IntArray:
+    """Return the mirror image of each chosen vertex as a place among the chosen."""
+    place = np.full(len(mirror), -1)
+    place[chosen] = np.arange(len(chosen))
+    return place[mirror[chosen]]
+
+
+def _mirrored(matrix: sp.csr_array, rows: IntArray, columns: IntArray) -> sp.csr_array:
+    """Return `matrix` with each pair of mirrored rows made from the first of the two.
+
+    Pruning breaks ties between equal weights by chance; symmetric tissue shall move symmetrically.
+    """
+    number = np.arange(len(rows))
+    first = np.where(rows == number, 0.5, (number < rows).astype(float))
+    reflected = sp.csr_array(matrix[rows])
+    reflected = sp.csr_array(
+        (reflected.data, columns[reflected.indices], reflected.indptr), shape=matrix.shape
+    )
+    both = sp.diags_array(first) @ matrix + sp.diags_array(1 - first) @ reflected
+    result = sp.csr_array(both)
+    result.eliminate_zeros()
+    result.sort_indices()
+    return result
 
 
 def exact_map(

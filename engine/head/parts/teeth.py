@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ..anatomy import smoothstep
-from ..geometry import Mesh, grid_triangles, joined, reflected, vertex_normals
+from ..geometry import Mesh, grid_triangles, joined, reflected, vertex_normals, without_slivers
 from ..head import Part
 
 
@@ -266,8 +266,9 @@ def _neck_line(arch: Arch, along: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _outwards(vertices: FloatArray, triangles: IntArray) -> IntArray:
-    """Return the triangles wound so that the closed mesh encloses a positive volume."""
+    """Return the triangles with an area, wound so that they enclose a positive volume."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     center = vertices.mean(axis=0)
     volume = np.einsum("ti,ti->", a - center, np.cross(b - center, c - center))
-    return triangles if volume > 0 else triangles[:, ::-1].copy()
+    solid = without_slivers(vertices, triangles)
+    return solid if volume > 0 else solid[:, ::-1].copy()
