@@ -4,8 +4,10 @@ It implements "Animation of Facial Expressions by Physical Modeling" (Zhang, Pra
 Eurographics 2001). A face is a rig; commands are keyframes; a simulator plays them.
 """
 
+from .clip import Clip, clip_of, record, settled, settled_units
 from .emotion import Emotion, blend
 from .errors import (
+    Cancelled,
     Diverged,
     EngineError,
     InvalidHead,
@@ -16,6 +18,7 @@ from .errors import (
 )
 from .facs import LETTERS, ActionUnit, Term, format_facs, parse_facs
 from .frame import Frame, Pose
+from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .jaw import JawHinge
 from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig
 from .simulator import FaceState, Simulator
@@ -28,6 +31,8 @@ __all__ = [
     "MODEL_CHOICES",
     "TICKS_PER_SECOND",
     "ActionUnit",
+    "Cancelled",
+    "Clip",
     "Diverged",
     "Emotion",
     "EngineError",
@@ -48,6 +53,15 @@ __all__ = [
     "UnknownName",
     "blend",
     "builtin_rig",
+    "clip_of",
+    "clip_to_glb",
+    "face_to_glb",
     "format_facs",
     "parse_facs",
+    "record",
+    "rig_to_glb",
+    "settled",
+    "settled_units",
+    "surface_to_glb",
+    "targets_to_glb",
 ]

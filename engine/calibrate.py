@@ -1,12 +1,13 @@
 """Fits each action unit's curve: intensity becomes the fraction of the full landmark displacement.
 
-Run `python -m engine.calibrate` after a change to tissue, muscles or recipes; it rewrites the
-curves in `engine/data/action_units.json`.
+Run `python -m engine.calibrate` after a change to tissue, muscles or recipes, or with the units to
+fit, `… AU12 AU18`; it rewrites the curves in `engine/data/action_units.json`.
 """
 
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +22,7 @@ from .timeline import Keyframe
 SCALES = np.round(np.arange(0.1, 1.81, 0.1), 3)
 """Scales of a recipe that are simulated; what lies between is interpolated."""
 INTENSITIES = (0.25, 0.5, 0.75, 1.0)
-AIM = 0.45
+AIM = 0.3
 """Where in the human range the full displacement is put: 0 its low end, 1 its high end."""
 
 
@@ -55,11 +56,11 @@ def uncalibrated(rig: Rig) -> Rig:
     return replace(rig, action_units=units)
 
 
-def calibrate(rig: Rig) -> Mapping[str, list[list[float]]]:
-    """Return the fitted curve of every unit that has a landmark to fit."""
+def calibrate(rig: Rig, *only: str) -> Mapping[str, list[list[float]]]:
+    """Return the fitted curve of every unit that has a landmark to fit, or of `only` some."""
     plain, top = uncalibrated(rig), float(SCALES[-1])
     curves: dict[str, list[list[float]]] = {}
-    for landmark in LANDMARKS:
+    for landmark in (mark for mark in LANDMARKS if not only or mark.unit in only):
         if landmark.calibrates and landmark.unit in rig.action_units:
             curves[landmark.unit] = _curve(plain, landmark, top)
     return curves
@@ -70,7 +71,7 @@ def _curve(rig: Rig, landmark: Landmark, top: float) -> list[list[float]]:
         Keyframe(action_units={landmark.unit: float(scale) / top}) for scale in SCALES
     ]
     values = np.array([landmark.measure(face) for face in settle(rig, keyframes)])
-    full = landmark.low + AIM * (landmark.high - landmark.low)
+    full = landmark.full or landmark.low + AIM * (landmark.high - landmark.low)
     return fit_curve(np.concatenate([[0.0], SCALES]), values, full)
 
 
@@ -78,7 +79,7 @@ def main() -> None:
     """Rewrite the curves of the built-in action units."""
     path = Path(__file__).parent / "data" / "action_units.json"
     data = json.loads(path.read_text(encoding="utf-8"))
-    curves = calibrate(builtin_rig("standard"))
+    curves = calibrate(builtin_rig("standard"), *sys.argv[1:])
     for entry in data["action_units"]:
         entry["curve"] = curves.get(entry["name"], entry["curve"])
     path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")

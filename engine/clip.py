@@ -11,7 +11,7 @@ import numpy as np
 
 from .arrays import Float32Array
 from .cache import Arrays, cached_arrays, content_key
-from .errors import Diverged, EngineError, InvalidValue
+from .errors import Diverged, InvalidValue
 from .frame import Frame, Pose
 from .rig import Model, Rig
 from .simulator import Simulator
@@ -23,10 +23,6 @@ FACE = "clip"
 MAX_FPS = TICKS_PER_SECOND
 UNIT_FADE = 0.15
 """Seconds over which an action unit is raised before it settles; a jump excites the tissue."""
-
-
-class Cancelled(EngineError):
-    """Raised where a recording stops because its caller asked for it."""
 
 
 @dataclass(frozen=True, eq=False)

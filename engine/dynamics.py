@@ -145,6 +145,7 @@ class Contacts(NamedTuple):
         tooth_clearance: Distance kept, mm, shape (t,).
         arch: Depth z of the arch at |x| = 0, 1, 2, … mm.
         arch_bottom: Height below which lips may fall back behind the upper teeth, mm.
+        arch_fall: How far they may, mm per mm.
         eye_nodes: Epidermis nodes kept off an eyeball, shape (e,).
         eye_centers: Ball centre for each, shape (3, e).
         eye_radius: Least distance, mm, shape (e,).
@@ -157,6 +158,7 @@ class Contacts(NamedTuple):
     tooth_clearance: FloatArray
     arch: FloatArray
     arch_bottom: float
+    arch_fall: float
     eye_nodes: IndexArray
     eye_centers: FloatArray
     eye_radius: FloatArray
@@ -539,7 +541,10 @@ def resolve_lips(
 
 @kernel
 def resolve_teeth(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
-    """Keep the lips before the upper dental arch."""
+    """Keep the lips before the upper dental arch, pushing along the arch's own normal.
+
+    Pushed straight forward, a lip corner on the steep side of the arch gains energy and chatters.
+    """
     arch = contacts.arch
     for q in range(contacts.tooth_nodes.shape[0]):
         i = contacts.tooth_nodes[q]
@@ -547,14 +552,26 @@ def resolve_teeth(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
         cell = int(lateral)
         if cell >= arch.shape[0] - 1:
             continue
-        front = arch[cell] + (lateral - cell) * (arch[cell + 1] - arch[cell])
-        front += contacts.tooth_clearance[q]
+        slope = arch[cell + 1] - arch[cell]
+        front = arch[cell] + (lateral - cell) * slope + contacts.tooth_clearance[q]
+        nx = -slope if x[0, i] > 0.0 else slope
+        ny = 0.0
         if x[1, i] < contacts.arch_bottom:
             # Below the edge of the upper teeth a dropping lower lip may swing back with the jaw.
-            front -= (contacts.arch_bottom - x[1, i]) * 0.8
-        if x[2, i] < front:
-            x[2, i] = front
-            v[2, i] = max(v[2, i], 0.0)
+            front -= (contacts.arch_bottom - x[1, i]) * contacts.arch_fall
+            ny = -contacts.arch_fall
+        inside = front - x[2, i]
+        if inside > 0.0:
+            squared = nx * nx + ny * ny + 1.0
+            push = inside / squared
+            x[0, i] += push * nx
+            x[1, i] += push * ny
+            x[2, i] += push
+            inwards = (v[0, i] * nx + v[1, i] * ny + v[2, i]) / squared
+            if inwards < 0.0:
+                v[0, i] -= inwards * nx
+                v[1, i] -= inwards * ny
+                v[2, i] -= inwards
 
 
 @kernel

@@ -6,7 +6,8 @@ EngineError
 ├── InvalidHead      a mesh that cannot carry tissue
 ├── InvalidNotation  a FACS string that cannot be read
 ├── InvalidTrack     a timeline or tracker file that cannot be read
-└── Diverged         a simulation that left the finite numbers
+├── Diverged         a simulation that left the finite numbers
+└── Cancelled        work that its caller stopped
 """
 
 from __future__ import annotations
@@ -56,3 +57,7 @@ class InvalidTrack(EngineError):
 
 class Diverged(EngineError):
     """A simulation whose numbers are no longer finite."""
+
+
+class Cancelled(EngineError):
+    """Raised where a recording stops because its caller asked for it."""

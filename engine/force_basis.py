@@ -32,6 +32,10 @@ QUADRATURE = 4
 """Points along each side of a quad at which weights are integrated."""
 
 
+LID_EDGE = (0.35, 0.6)
+"""Radius, as a share of the orbital ellipse, over which the lids end and the cheek begins."""
+
+
 @dataclass(frozen=True, eq=False)
 class Samples:
     """Places where muscles are evaluated.
@@ -112,6 +116,8 @@ def share_of(muscle: Muscle, points: FloatArray, jaw: FloatArray) -> FloatArray:
         # Whole, the ring also pulls the brow down and AU6 frowns.
         share *= 1.0 - 0.88 * _smoothstep(-2.0, 8.0, points[:, 1])
         share *= 0.15 + 0.85 * _smoothstep(12.0, 26.0, points[:, 0])
+        # The orbital part lies outside the lids; pulling on them too made AU6 bistable.
+        share *= _smoothstep(*LID_EDGE, muscle.radius_at(points))
     acts_on = "skin" if isinstance(muscle, LidMuscle) else muscle.acts_on
     if acts_on == "upper_lip":
         share *= 1.0 - jaw

@@ -31,6 +31,8 @@ class Landmark:
         measure: From rest points and displacements of the surface, both by name, to mm; positive
             in the unit's direction.
         calibrates: Whether the unit's curve is fitted to this figure.
+        full: Figure at intensity 1 that it is fitted to; None leaves the choice of a place in the
+            range to the calibration.
     """
 
     unit: str
@@ -39,6 +41,7 @@ class Landmark:
     high: float
     measure: Callable[[Face], float]
     calibrates: bool = True
+    full: float | None = None
 
 
 @dataclass(frozen=True)
@@ -109,13 +112,13 @@ LANDMARKS: tuple[Landmark, ...] = (
     Landmark("AU15", "corner down", 6, 8, lambda f: -float(f.u(CORNER)[1])),
     Landmark("AU16", "lower lip down", 5, 7, lambda f: -float(f.u(LOWER_LIP)[1])),
     Landmark("AU17", "chin up", 4, 6, lambda f: float(f.u(CHIN)[1])),
-    Landmark("AU18", "corners in", 5, 8, lambda f: -float(f.u(CORNER)[0])),
+    Landmark("AU18", "corners in", 5, 8, lambda f: -float(f.u(CORNER)[0]), full=5.1),
     Landmark("AU20", "corner back", 6, 8, lambda f: f.towards(CORNER, 0.7, 0.0, -0.7)),
-    Landmark("AU23", "lips narrow", 1, 4, lambda f: -f.opening("M2_1.L", "M2_9.L")),
-    Landmark("AU24", "lips pressed", 1, 4, lambda f: -f.opening("M2_1.L", "M2_9.L")),
+    Landmark("AU23", "lips narrow", 1, 3, lambda f: -f.opening("M2_1.L", "M2_9.L")),
+    Landmark("AU24", "lips pressed", 1, 3, lambda f: -f.opening("M2_1.L", "M2_9.L")),
     Landmark("AU25", "lip gap", 4, 6, lambda f: f.distance(LIP_TOP, LIP_BOTTOM)),
     Landmark("AU26", "lip gap", 15, 20, lambda f: f.distance(LIP_TOP, LIP_BOTTOM)),
-    Landmark("AU27", "lip gap", 30, 45, lambda f: f.distance(LIP_TOP, LIP_BOTTOM)),
+    Landmark("AU27", "lip gap", 30, 36, lambda f: f.distance(LIP_TOP, LIP_BOTTOM), full=30.5),
     Landmark("AU43", "fissure left", -1, 0.1, lambda f: f.gap(UPPER_LID, LOWER_LID), False),
     Landmark("AU45", "fissure left", -1, 0.1, lambda f: f.gap(UPPER_LID, LOWER_LID), False),
 )

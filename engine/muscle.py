@@ -133,8 +133,7 @@ class SphincterMuscle:
             profile: "ring" (default, falls to 0 on the rim) or "literal" (Eq. 11, greatest there).
         """
         across, up, out = self._local(points)
-        a, b = self.semi_major, self.semi_minor
-        radius = np.sqrt((up * a) ** 2 + (across * b) ** 2) / (a * b)  # Eq. 12
+        radius = self.radius_at(points)
         weight = ring_profile(radius) if profile == "ring" else literal_ring_profile(radius)
         if self.hoop:
             weight = weight * self._hoop_factor(across, up, radius)
@@ -143,6 +142,12 @@ class SphincterMuscle:
     def directions(self, points: FloatArray) -> FloatArray:
         """Return unit vectors from skin `points`, shape (k, 3), to the epicentre (Eq. 10)."""
         return _unit(np.array(self.center) - points)
+
+    def radius_at(self, points: FloatArray) -> FloatArray:
+        """Return r of Eq. 12 at `points`, shape (k, 3): 0 in the middle, 1 on the rim → (k,)."""
+        across, up, _ = self._local(points)
+        a, b = self.semi_major, self.semi_minor
+        return np.asarray(np.sqrt((up * a) ** 2 + (across * b) ** 2) / (a * b))
 
     def _local(self, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         normal = np.array(self.normal) / math.sqrt(sum(c * c for c in self.normal))

@@ -74,14 +74,14 @@ class Timeline:
     duration: float
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.duration) and 0.0 < self.duration <= MAX_SECONDS):
-            raise InvalidTrack(
-                f"the duration is {self.duration!r} s; it must lie between 0 and {MAX_SECONDS:g}"
-            )
         times = [keyframe.time for keyframe in self.keyframes]
         for index, time in enumerate(times):
             if not (math.isfinite(time) and time >= 0.0):
                 raise InvalidTrack(f"keyframe {index}: time is {time!r}; it must be 0 or more")
+        if not (math.isfinite(self.duration) and 0.0 < self.duration <= MAX_SECONDS):
+            raise InvalidTrack(
+                f"the duration is {self.duration!r} s; it must lie between 0 and {MAX_SECONDS:g}"
+            )
         if times != sorted(times):
             object.__setattr__(
                 self, "keyframes", tuple(sorted(self.keyframes, key=lambda k: k.time))

@@ -22,6 +22,9 @@ TOOTH_MARGIN_MM = 0.3
 TOOTH_REACH_MM = 26.0
 ARCH_BOTTOM_MM = -75.0
 """Lower edge of the upper teeth; lips may fall back below it."""
+ARCH_FALL = 0.8
+ARCH_HALF_WIDTH_MM = 28.0
+"""Half width of the upper dental arch; the cheek beside it touches no teeth."""
 EYE_CLEARANCE_MM = {"E0": 12.45, "E1": 12.75, "E2": 12.75, "E3": 12.75}
 """Least distance from the eye's centre, by lid ring: ball, cornea and the lid's own thickness."""
 LID_SHARE = {"EB": 1.0, "E0": 1.0, "E1": 1.0, "E2": 0.5}
@@ -97,8 +100,9 @@ def contacts_of(head: Head) -> Contacts:
         lip_gap=np.minimum(LIP_GAP_MM, points[upper, 1] - points[lower, 1]),
         tooth_nodes=tooth_nodes,
         tooth_clearance=tooth_clearance,
-        arch=dental_arch(np.arange(40.0)),
+        arch=dental_arch(np.arange(ARCH_HALF_WIDTH_MM)),
         arch_bottom=ARCH_BOTTOM_MM,
+        arch_fall=ARCH_FALL,
         eye_nodes=eye_nodes,
         eye_centers=np.ascontiguousarray(eye_centers.T),
         eye_radius=eye_radius,
@@ -108,7 +112,7 @@ def contacts_of(head: Head) -> Contacts:
 def dental_arch(lateral: FloatArray) -> FloatArray:
     """Return the depth z, mm, of the upper dental arch's front at |x| = `lateral`, mm."""
     t = 2.0 / math.pi * np.arcsin(np.minimum(lateral / 29.0, 0.999))
-    return np.where(lateral < 28.0, 94.9 - 44.0 * t**2.1, 40.0)
+    return np.asarray(94.9 - 44.0 * t**2.1)
 
 
 def _lip_pairs(index: dict[str, int]) -> tuple[IndexArray, IndexArray]:
