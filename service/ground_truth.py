@@ -1,4 +1,4 @@
-"""What a clip truly shows, a line a frame: activations, pose, and landmarks in millimetres."""
+"""What a clip truly shows, a line a frame: action units, activations, pose, and landmarks."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import io
 import numpy as np
 
 from engine import Clip, Timeline
+
+from .commanded import commanded_units
 
 _POSE = (
     "jaw_pitch",
@@ -24,11 +26,13 @@ _POSE = (
 
 
 def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
-    """Return a table: frame, time [s], activation of each muscle, pose, landmarks [mm].
+    """Return a table: frame, time [s], commanded units, activation of each muscle, pose, landmarks.
 
-    Landmarks are in the head's frame, before the head's pose.
+    Landmarks are on the drawn skin, in the head's frame [mm], before the head's pose.
     """
     head = clip.rig.head
+    times = [index / clip.fps for index in range(len(clip.displacements))]
+    unit_names, units = commanded_units(timeline, clip.rig, times)
     names = list(head.landmarks)
     places = np.array([head.landmarks[name] for name in names], dtype=np.int64)
     text = io.StringIO()
@@ -37,6 +41,7 @@ def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
         [
             "frame",
             "time",
+            *unit_names,
             *clip.rig.muscle_names,
             *_POSE,
             *(f"{name}.{axis}" for name in names for axis in "xyz"),
@@ -48,7 +53,8 @@ def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
         table.writerow(
             [
                 index,
-                f"{index / clip.fps:.6g}",
+                f"{times[index]:.6g}",
+                *(f"{value:.4f}" for value in units[index]),
                 *(f"{value:.4f}" for value in clip.activations[index]),
                 *(f"{value:.3f}" for value in (pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)),
                 *(f"{value:.3f}" for value in (*pose.gaze_left, *pose.gaze_right, *pose.head)),

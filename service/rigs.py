@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import importlib.util
 import os
 import tempfile
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -114,8 +116,9 @@ class Rigs:
         return rig
 
     async def _file(self, key: str, make: Callable[[], bytes]) -> bytes:
+        path = self._cache_dir / f"{key}-{_engine_stamp()}.glb"
         try:
-            return await self._files.get(key, lambda: _stored(self._cache_dir / f"{key}.glb", make))
+            return await self._files.get(key, lambda: _stored(path, make))
         except EngineError as error:
             raise refused_by_engine(error) from error
 
@@ -139,6 +142,17 @@ def _derive(base: Rig, changes: Mapping[str, Any]) -> Rig:
 
 def _key(base: str, changes: Mapping[str, Any]) -> str:
     return f"{base}+{hashlib.sha256(repr(sorted(changes.items())).encode()).hexdigest()}"
+
+
+@lru_cache(maxsize=1)
+def _engine_stamp() -> str:
+    """Return a hash of the engine's source: another engine writes other files of the same rig."""
+    spec = importlib.util.find_spec("engine")
+    folders = [Path(folder) for folder in (spec and spec.submodule_search_locations) or ()]
+    digest = hashlib.sha256()
+    for source in sorted(path for folder in folders for path in folder.rglob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 def _stored(path: Path, make: Callable[[], bytes]) -> bytes:

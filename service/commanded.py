@@ -1,0 +1,113 @@
+"""The action units that a timeline commands, moment by moment: what a clip is asked to show.
+
+It follows the rules by which a face mixes its layers, for intensities instead of muscles: a value
+eases to its target over the command's fade, and a higher layer overrides a lower by its share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from engine import LAYERS, Keyframe, Rig, Timeline
+
+
+@dataclass
+class _Ramp:
+    """A number on its way from `start` to `target` [seconds]."""
+
+    start: float = 0.0
+    target: float = 0.0
+    begin: float = 0.0
+    length: float = 0.0
+
+    def at(self, time: float) -> float:
+        if self.length <= 0.0 or time >= self.begin + self.length:
+            return self.target
+        done = max(0.0, (time - self.begin) / self.length)
+        return self.start + (self.target - self.start) * done * done * (3.0 - 2.0 * done)
+
+    def move(self, target: float, time: float, length: float) -> None:
+        if target != self.target:
+            self.start, self.target, self.begin, self.length = self.at(time), target, time, length
+
+
+@dataclass
+class _Layer:
+    """What one layer holds, by action unit, and how much of the lower layers it overrides."""
+
+    units: dict[str, float] = field(default_factory=dict)
+    values: dict[str, _Ramp] = field(default_factory=dict)
+    shares: dict[str, _Ramp] = field(default_factory=dict)
+    weight: float = 1.0
+    expires: float | None = None
+    fade_out: float = 0.0
+
+    def apply(self, keyframe: Keyframe, recipe: Mapping[str, float] | None) -> None:
+        if recipe is not None:
+            self.units = dict(recipe)
+        elif keyframe.replace:
+            self.units = {}
+        named = {**self.units, **keyframe.action_units}
+        self.units = {key: value for key, value in named.items() if value > 0.0}
+        self.weight = keyframe.weight
+        self.expires = None
+        if keyframe.hold is not None:
+            self.expires = keyframe.time + keyframe.fade + keyframe.hold
+            self.fade_out = keyframe.fade_out
+        self._retarget(keyframe.time, keyframe.fade)
+
+    def let_go(self, time: float) -> None:
+        if self.expires is not None and time >= self.expires:
+            self.units = {}
+            self._retarget(self.expires, self.fade_out)
+            self.expires = None
+
+    def _retarget(self, time: float, fade: float) -> None:
+        for key in {*self.units, *self.values}:
+            value = self.values.setdefault(key, _Ramp())
+            share = self.shares.setdefault(key, _Ramp())
+            if key in self.units:
+                fresh = share.at(time) == 0.0
+                value.move(self.units[key], time, 0.0 if fresh else fade)
+            share.move(self.weight if key in self.units else 0.0, time, fade)
+
+
+def commanded_units(
+    timeline: Timeline, rig: Rig, times: Sequence[float]
+) -> tuple[list[str], npt.NDArray[np.float64]]:
+    """Return names, and intensities 0..1 at `times` [s, rising], shape (times, names).
+
+    Every unit of the rig has a column, and so has every single side, `L12`, that is commanded.
+    """
+    recipes = [_recipe(keyframe, rig) for keyframe in timeline.keyframes]
+    sided = {key for keyframe in timeline.keyframes for key in keyframe.action_units}
+    sided |= {key for recipe in recipes for key in recipe or ()}
+    names = [*rig.action_units, *sorted(sided - set(rig.action_units))]
+    layers = {layer: _Layer() for layer in LAYERS}
+    coming = list(zip(timeline.keyframes, recipes, strict=True))
+    rows = np.zeros((len(times), len(names)))
+    for row, time in enumerate(times):
+        while coming and coming[0][0].time <= time:
+            keyframe, recipe = coming.pop(0)
+            layers[keyframe.layer].let_go(keyframe.time)
+            layers[keyframe.layer].apply(keyframe, recipe)
+        for layer in layers.values():
+            layer.let_go(time)
+            for column, name in enumerate(names):
+                if name in layer.values:
+                    share = layer.shares[name].at(time)
+                    mixed = rows[row, column] * (1.0 - share) + layer.values[name].at(time) * share
+                    rows[row, column] = mixed
+    return names, rows
+
+
+def _recipe(keyframe: Keyframe, rig: Rig) -> dict[str, float] | None:
+    if keyframe.emotion is None:
+        return None
+    label, intensity = keyframe.emotion
+    terms = rig.resolve_emotion(label).terms
+    return {term.key: term.intensity * intensity for term in terms}

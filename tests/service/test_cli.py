@@ -1,0 +1,143 @@
+"""The command line: 0, or 2 and one clear sentence."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from service.cli import app
+
+TIMELINE = {
+    "timeline": [{"time": 0.0, "facs": "6C+12D", "fade": 0.1}],
+    "duration": 0.2,
+    "fps": 10,
+}
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def refused(result: Result) -> str:
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    return " ".join(result.output.split())
+
+
+@pytest.fixture
+def timeline(tmp_path: Path) -> Path:
+    """A short timeline file."""
+    path = tmp_path / "smile.json"
+    path.write_text(json.dumps(TIMELINE))
+    return path
+
+
+def test_a_timeline_is_rendered(timeline: Path, tmp_path: Path) -> None:
+    output = tmp_path / "smile.glb"
+    result = run("clip", timeline, "-o", output, "--fps", 20)
+    assert result.exit_code == 0, result.output
+    assert "5 frames" in result.output
+    assert output.read_bytes()[:4] == b"glTF"
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "said"),
+    [
+        (None, (), "cannot be read"),
+        ("{", (), "not a JSON file"),
+        ("[]", (), "not a timeline"),
+        ('{"timeline": [{"time": NaN}]}', (), "not a timeline"),
+        ('{"timeline": [{"time": 0, "facs": "odd"}]}', (), "cannot read"),
+        (json.dumps(TIMELINE), ("--rig", "nobody"), "no rig"),
+    ],
+)
+def test_a_file_that_cannot_be_rendered_is_refused(
+    tmp_path: Path, content: str | None, options: tuple[str, ...], said: str
+) -> None:
+    source = tmp_path / "in.json"
+    if content is not None:
+        source.write_text(content)
+    result = run("clip", source, "-o", tmp_path / "out.glb", *options)
+    assert said in refused(result)
+    assert not (tmp_path / "out.glb").exists()
+
+
+def test_a_track_is_not_available_yet(tmp_path: Path) -> None:
+    assert "not available yet" in refused(run("clip", tmp_path / "a.csv", "-o", tmp_path / "b.glb"))
+
+
+def test_a_missing_folder_is_said(timeline: Path, tmp_path: Path) -> None:
+    assert "does not exist" in refused(run("clip", timeline, "-o", tmp_path / "no" / "b.glb"))
+
+
+@pytest.mark.parametrize("arguments", [("clip",), ("clip", "--fps", "0"), ("dance",), ("--odd",)])
+def test_wrong_usage_ends_with_2(arguments: tuple[str, ...]) -> None:
+    refused(run(*arguments))
+
+
+def test_a_sheet_says_which_views_there_are(tmp_path: Path) -> None:
+    assert "three-quarter" in refused(run("sheet", "-o", tmp_path / "a.png", "--view", "behind"))
+
+
+def test_only_one_worker_is_served(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "one worker" in refused(run("serve", "--workers", 2))
+    monkeypatch.setenv("WEB_CONCURRENCY", "4")
+    assert "one worker" in refused(run("serve"))
+
+
+def test_a_port_in_use_is_said() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        assert f"Port {port} on 127.0.0.1 is in use" in refused(run("serve", "--port", port))
+
+
+def test_a_setting_that_is_not_valid_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RISORIUS_MAX_SESSIONS", "many")
+    assert "max_sessions" in refused(run("serve"))
+
+
+def test_a_service_starts_says_where_and_stops(tmp_path: Path) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "service", "serve", "--port", str(port)],
+        env={**os.environ, "RISORIUS_DATA_DIR": str(tmp_path)},
+        cwd=Path(__file__).parents[2],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        deadline = time.monotonic() + 60
+        while True:
+            try:
+                ready = f"http://127.0.0.1:{port}/api/ready"
+                with urllib.request.urlopen(ready, timeout=5) as answer:
+                    assert answer.status == 200
+                    break
+            except OSError as error:
+                if isinstance(error, urllib.error.HTTPError):
+                    error.close()
+                assert time.monotonic() < deadline
+                time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == 0
+    assert f"http://127.0.0.1:{port}" in said
+    assert "ready" in said

@@ -1,0 +1,86 @@
+"""What is not documented fails here: routes, settings, commands, and the reader of the stream."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import api_routes, settings_in
+from typer.testing import CliRunner
+
+from service.app import create_app
+from service.cli import app as command_line
+from service.protocol import __doc__ as layout
+from service.server import running
+from service.settings import Settings
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.fixture(scope="module")
+def api() -> str:
+    """The page about the API."""
+    return (DOCS / "api.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def stream() -> str:
+    """The page about the stream."""
+    return (DOCS / "stream.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("method", "path"), api_routes())
+def test_every_route_is_documented(api: str, method: str, path: str) -> None:
+    assert f"| `{method} {path}` |" in api
+
+
+def test_every_documented_route_exists(api: str) -> None:
+    documented = set(re.findall(r"^\| `(GET|PUT|POST|PATCH|DELETE) (\S+)` \|", api, re.M))
+    assert documented == set(api_routes())
+
+
+@pytest.mark.parametrize("name", Settings.model_fields)
+def test_every_setting_is_documented(api: str, name: str) -> None:
+    meaning = Settings.model_fields[name].description
+    assert meaning
+    assert re.search(rf"^\| `RISORIUS_{name.upper()}` \| .+ \| {re.escape(meaning)} \|$", api, re.M)
+
+
+def test_every_command_is_documented_and_has_help(api: str) -> None:
+    for command in command_line.registered_commands:
+        name = command.callback.__name__  # type: ignore[union-attr]
+        assert f"| `risorius {name}" in api
+        answer = CliRunner().invoke(command_line, [name, "--help"])
+        assert answer.exit_code == 0
+        assert "Usage" in answer.output
+
+
+def test_both_descriptions_of_the_frame_agree(stream: str) -> None:
+    rows = re.findall(r"^\| (\w+) \| ([^|]+) \|", layout or "", re.M)[1:]
+    assert len(rows) == 12
+    for byte, kind in rows:
+        assert f"| {byte} | {kind.replace(' x ', ' \u00d7 ').strip()} |" in stream
+
+
+def test_the_reader_of_the_stream_reads_a_smile(stream: str, tmp_path: Path) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", stream, re.S)
+    assert len(blocks) == 1
+    assert len(blocks[0].splitlines()) <= 50
+    program = tmp_path / "reader.py"
+    program.write_text(blocks[0])
+    settings = settings_in(tmp_path)
+    with running(create_app(settings), settings) as url:
+        done = subprocess.run(
+            [sys.executable, str(program), url],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[0] == "754 vertices"
+    assert float(lines[-1].split()[-2]) > 4.0
