@@ -11,7 +11,7 @@ import numpy as np
 
 from .arrays import Float32Array
 from .cache import Arrays, cached_arrays, content_key
-from .errors import Diverged, InvalidValue
+from .errors import Cancelled, Diverged, InvalidValue
 from .frame import Frame, Pose
 from .rig import Model, Rig
 from .simulator import Simulator
