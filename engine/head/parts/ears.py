@@ -107,8 +107,8 @@ def _relief(share: FloatArray, angle: FloatArray) -> FloatArray:
     height += 2.2 * knob(0.25, 0.16, 0.30, 0.06) * smoothstep(0.9, 0.3, share)  # crus of the helix
     height += 1.2 * smoothstep(-0.6, -0.9, up * share)  # lobe
     # The front edge dives into the cheek.
-    dive = smoothstep(0.62, 1.0, share) * smoothstep(0.1, 0.75, np.cos(angle))
-    return np.asarray(height - 9.0 * dive * smoothstep(-1.0, -0.6, up))
+    dive = smoothstep(0.62, 1.0, share) * smoothstep(-0.05, 0.6, np.cos(angle))
+    return np.asarray(height - 12.0 * dive * smoothstep(-1.0, -0.6, up))
 
 
 def _colors(local: FloatArray) -> FloatArray:

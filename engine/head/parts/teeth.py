@@ -96,6 +96,7 @@ CROWN_PROFILE = (
 ENAMEL = np.array([0.80, 0.69, 0.53])
 ENAMEL_NECK = np.array([0.68, 0.51, 0.32])
 ENAMEL_EDGE = np.array([0.74, 0.69, 0.60])
+FLESH_TINT = np.array([1.0, 1.25, 1.4])
 GUM = np.array([0.46, 0.165, 0.155])
 GUM_MARGIN = np.array([0.56, 0.25, 0.225])
 
@@ -146,9 +147,12 @@ def dental_arch(arch: Arch, along: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def mouth_shade(vertices: FloatArray) -> FloatArray:
-    """Return how much light reaches points (v, 3) inside the mouth, 0..1, shape (v,)."""
+    """Return how much light, linear RGB in 0..1, reaches points (v, 3) inside the mouth.
+
+    What reaches the back teeth has been red flesh before.
+    """
     depth = smoothstep(56.0, 93.0, vertices[:, 2] - 0.3 * np.abs(vertices[:, 0]))
-    return np.asarray(0.12 + 0.88 * depth)
+    return np.asarray((0.10 + 0.90 * depth)[:, None] ** FLESH_TINT)
 
 
 def _row(arch: Arch) -> tuple[Mesh, FloatArray]:
@@ -159,7 +163,7 @@ def _row(arch: Arch) -> tuple[Mesh, FloatArray]:
         pieces += [crown, reflected(crown)]
         colors += [color, color]
     mesh = joined(pieces)
-    return mesh, np.vstack(colors) * mouth_shade(mesh[0])[:, None]
+    return mesh, np.vstack(colors) * mouth_shade(mesh[0])
 
 
 def _crown(arch: Arch, number: int, center: float) -> tuple[Mesh, FloatArray]:
@@ -251,7 +255,7 @@ def _gum(arch: Arch) -> tuple[Mesh, FloatArray]:
     margin = smoothstep(-0.3, -0.9, toward_root)[None, :, None]
     colors = np.broadcast_to(GUM * (1 - margin) + GUM_MARGIN * margin, (len(along), 16, 3))
     mesh = (vertices, _outwards(vertices, triangles))
-    return mesh, colors.reshape(-1, 3) * mouth_shade(vertices)[:, None]
+    return mesh, colors.reshape(-1, 3) * mouth_shade(vertices)
 
 
 def _neck_line(arch: Arch, along: FloatArray) -> tuple[FloatArray, FloatArray]:

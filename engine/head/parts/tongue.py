@@ -27,7 +27,7 @@ def tongue_part() -> Part:
     vertices += CENTER
     coat = smoothstep(0.9, -0.2, sphere[:, 2])[:, None] * top[:, None]
     speckle = np.random.default_rng(5).normal(0, 0.035, len(vertices))[:, None]
-    colors = (TIP * (1 - coat) + BACK * coat) * (1 + speckle) * mouth_shade(vertices)[:, None]
+    colors = (TIP * (1 - coat) + BACK * coat) * (1 + speckle) * mouth_shade(vertices)
     return Part(
         name="tongue",
         vertices=vertices,
