@@ -55,7 +55,14 @@ export default ts.config(
     },
   },
   {
-    files: ['src/protocol.ts', 'src/connection.ts', 'src/api.ts', 'src/throttle.ts', 'src/url.ts'],
+    files: [
+      'src/protocol.ts',
+      'src/connection.ts',
+      'src/api.ts',
+      'src/throttle.ts',
+      'src/tick-rate.ts',
+      'src/url.ts',
+    ],
     rules: forbid(THREE, DRAWING, PANELS),
   },
   {
@@ -63,8 +70,16 @@ export default ts.config(
     rules: forbid(THREE, NETWORK, PANELS),
   },
   {
-    files: ['src/face.ts', 'src/scene.ts', 'src/materials.ts', 'src/lights.ts', 'src/overlays.ts'],
+    files: [
+      'src/face.ts',
+      'src/scene.ts',
+      'src/materials.ts',
+      'src/lights.ts',
+      'src/skin-shader.ts',
+      'src/overlays.ts',
+    ],
     rules: forbid(NETWORK, PANELS),
   },
+  { files: ['src/commands.ts', 'src/edits.ts'], rules: forbid(THREE, DRAWING, SOCKETS) },
   { files: ['src/panels/**', 'src/state/**'], rules: forbid(THREE, DRAWING, SOCKETS) },
 );

@@ -174,7 +174,7 @@ export class Face {
       });
     }
     this.normals.update(surface.positions, surface.dirty);
-    dress(this.root, surface.rest);
+    dress(this.root);
     this.skinPosition = dynamic(skin.geometry, 'position', surface.positions);
     this.skinNormal = dynamic(skin.geometry, 'normal', this.normals.normals);
   }
@@ -287,25 +287,24 @@ function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
 }
 
 /** Give every mesh its material, its shadow and its place in the drawing order. */
-function dress(root: Object3D, skinRest: Float32Array): void {
+function dress(root: Object3D): void {
   root.updateMatrixWorld(true);
-  const neckFade = fadeOf(skinRest);
+  const neckFade = neckFadeOf(root);
   for (const mesh of meshes(root)) {
     const kind = (mesh.userData.material as string | undefined) ?? 'skin';
-    const isFace = mesh.userData.role === 'skin';
     const inMouth = (kind === 'wet' || kind === 'teeth') && isInMouth(mesh);
     if (inMouth) darkenThroat(mesh);
     mesh.visible = mesh.userData.role !== 'tissue';
     mesh.material = createMaterial(kind, {
       vertexColors: mesh.geometry.hasAttribute('color'),
       inMouth,
-      neckFade: isFace ? neckFade : null,
+      neckFade,
     });
     mesh.castShadow = kind !== 'cornea';
     mesh.receiveShadow = kind !== 'cornea';
     mesh.frustumCulled = false;
-    // The skin is blended at the neck, so it must come after what is opaque and before the corneas.
-    mesh.renderOrder = kind === 'cornea' ? 2 : isFace ? 1 : 0;
+    // Skin is blended at the neck, so it must come after what is opaque and before the corneas.
+    mesh.renderOrder = kind === 'cornea' ? 2 : kind === 'skin' ? 1 : 0;
     if (kind === 'skin') {
       mesh.geometry.setAttribute('restPosition', mesh.geometry.getAttribute('position').clone());
     }
@@ -330,10 +329,14 @@ function darkenThroat(mesh: Mesh<BufferGeometry>): void {
   }
 }
 
-/** Heights [mm] between which the skin fades above the cut of its neck; a mask without a neck has none. */
-function fadeOf(positions: Float32Array): readonly [number, number] | null {
+/** Heights [mm] between which skin fades above the cut of the neck; null for a mask without a neck. */
+function neckFadeOf(root: Object3D): readonly [number, number] | null {
   let lowest = Infinity;
-  for (let i = 1; i < positions.length; i += 3) lowest = Math.min(lowest, positions[i]!);
+  for (const mesh of meshes(root)) {
+    if (mesh.userData.material !== 'skin') continue;
+    mesh.geometry.computeBoundingBox();
+    lowest = Math.min(lowest, mesh.geometry.boundingBox!.min.y);
+  }
   if (lowest > NECK_BELOW) return null;
   return [lowest * MILLIMETRES + 2, lowest * MILLIMETRES + NECK_FADE];
 }

@@ -27,7 +27,7 @@ float stubble(vec3 p) { return noise(p * vec3(3.1, 1.3, 1.3)) * 0.6 + noise(p * 
 
 /** Red light travels farthest in skin: it reaches around the terminator and into the edge of a shadow. */
 const SCATTER = /* glsl */ `
-const vec3 SCATTER_REACH = vec3(0.24, 0.09, 0.05);
+const vec3 SCATTER_REACH = vec3(0.21, 0.085, 0.05);
 vec3 scatteredCosine(float cosine) {
   vec3 t = clamp((cosine + SCATTER_REACH) / (1.0 + SCATTER_REACH), 0.0, 1.0);
   return t * mix(vec3(1.0), t, SCATTER_REACH);
@@ -35,7 +35,7 @@ vec3 scatteredCosine(float cosine) {
 vec3 scatteredShadow(float lit, float cosine) {
   // Beyond the terminator the map only shows the skin shading itself, which the scattered cosine does better.
   float open = mix(lit, 1.0, smoothstep(0.06, -0.12, cosine));
-  return pow(vec3(open), vec3(0.7, 0.95, 1.03));
+  return pow(vec3(open), vec3(0.8, 0.97, 1.02));
 }
 `;
 

@@ -1,6 +1,6 @@
 // How many ticks of the face a second arrive.
 
-const WINDOW_MS = 1000;
+const WINDOW_MS = 2000;
 
 export class TickRate {
   private readonly seen: { tick: number; time: number }[] = [];
@@ -9,7 +9,7 @@ export class TickRate {
   /**
    * Take note of a frame.
    * @param time of its arrival [ms].
-   * @returns ticks per second over about the last second; it changes at most four times a second, to be readable.
+   * @returns ticks per second over about the last two seconds; it changes at most four times a second, to be readable.
    */
   at(tick: number, time: number): number {
     const last = this.seen.at(-1);

@@ -28,6 +28,8 @@ export class Sliders {
   }
 }
 
+const NOTICE_MS = 9000;
+
 export class ViewerState {
   status = $state<'connecting' | 'open' | 'waiting' | 'closed'>('connecting');
   detail = $state('');
@@ -38,7 +40,7 @@ export class ViewerState {
   surfaceReady = $state(false);
   tickRate = $state(0);
   asleep = $state(false);
-  /** One sentence about the last thing that went wrong; empty when all is well. */
+  /** One sentence about the last thing that went wrong; empty when all is well, or after a while. */
   notice = $state('');
   emotion = $state('');
   emotionIntensity = $state(1);
@@ -48,6 +50,14 @@ export class ViewerState {
   sliders = new Sliders();
   /** Tissue and muscle numbers that were edited here, by `dermis.stiffness_low` or `muscle.force_scale`. */
   edits = $state<Numbers>({});
+  private fading: ReturnType<typeof setTimeout> | undefined;
+
+  /** Show a sentence for a while; an empty one takes the last away. */
+  say(sentence: string): void {
+    this.notice = sentence;
+    clearTimeout(this.fading);
+    if (sentence !== '') this.fading = setTimeout(() => (this.notice = ''), NOTICE_MS);
+  }
 }
 
 function numbersOnly(values: object | undefined): Numbers {

@@ -1,0 +1,29 @@
+// window.__viewer: what browser tests, contact sheets and curious visitors may read and do.
+
+import type { Triple } from './face';
+
+export interface ViewerHandle {
+  /** Face, panels' data and a first frame are there. */
+  readonly ready: boolean;
+  readonly connected: boolean;
+  readonly session: string;
+  readonly rig: string;
+  readonly tick: number;
+  readonly framesDrawn: number;
+  readonly asleep: boolean;
+  /** Drawn vertex of each anthropometric landmark. */
+  readonly landmarks: Readonly<Record<string, number>>;
+  /** A streamed point, by name or index, as drawn [mm, head frame]. */
+  point(which: string | number): Triple;
+  /** A vertex of the geometry buffer that is drawn [mm, head frame]. */
+  drawnVertex(index: number): Triple;
+  setView(name: string): void;
+  /** Resolves after the next drawn frame. */
+  render(): Promise<void>;
+}
+
+declare global {
+  interface Window {
+    __viewer: ViewerHandle;
+  }
+}

@@ -1,0 +1,118 @@
+// What goes over the wire when controls are moved, and in which order edits are sent.
+
+import { beforeEach, describe, expect, it, vi } from 'vitest';
+import { Commands } from '../src/commands';
+import { Edits } from '../src/edits';
+import { ViewerState } from '../src/state/viewer.svelte';
+
+describe('Commands', () => {
+  let viewer: ViewerState;
+  let sent: Record<string, unknown>[];
+  let frames: (() => void)[];
+  let commands: Commands;
+  const drawFrame = (): void => {
+    for (const run of frames.splice(0)) run();
+  };
+
+  beforeEach(() => {
+    viewer = new ViewerState();
+    sent = [];
+    frames = [];
+    commands = new Commands(
+      viewer,
+      (text) => sent.push(JSON.parse(text) as Record<string, unknown>),
+      (run) => frames.push(run),
+    );
+  });
+
+  it('says once a frame what was moved', () => {
+    commands.set('action_units', 'AU12', 0.1);
+    commands.set('action_units', 'AU12', 0.4);
+    commands.set('gaze', 'yaw', 10);
+    expect(sent).toEqual([]);
+    drawFrame();
+    expect(sent).toEqual([{ type: 'controls', action_units: { AU12: 0.4 }, gaze: { yaw: 10 } }]);
+  });
+
+  it('takes a unit apart without losing what it held', () => {
+    commands.set('action_units', 'AU12', 0.5);
+    drawFrame();
+    commands.set('action_units', 'L12', 0.8);
+    drawFrame();
+    expect(sent.at(-1)).toEqual({
+      type: 'controls',
+      action_units: { AU12: 0, L12: 0.8, R12: 0.5 },
+    });
+    expect(viewer.sliders.action_units).toEqual({ L12: 0.8, R12: 0.5 });
+  });
+
+  it('joins the sides again', () => {
+    commands.set('action_units', 'L12', 0.8);
+    commands.set('action_units', 'AU12', 0.3);
+    drawFrame();
+    expect(sent.at(-1)).toEqual({ type: 'controls', action_units: { L12: 0, AU12: 0.3 } });
+    expect(viewer.sliders.action_units).toEqual({ AU12: 0.3 });
+  });
+
+  it('lets go by saying what is still held', () => {
+    commands.set('action_units', 'AU12', 0.5);
+    commands.set('jaw', 'pitch', 5);
+    drawFrame();
+    commands.letGo('action_units', 'AU12');
+    expect(sent.at(-1)).toMatchObject({
+      replace: true,
+      layer: 'puppet',
+      action_units: {},
+      jaw: { pitch: 5 },
+    });
+  });
+
+  it('fades an emotion in, but follows its intensity at once', () => {
+    commands.playEmotion('anger', 1);
+    commands.playEmotion('anger', 0.5);
+    expect(sent.map(({ fade_in }) => fade_in)).toEqual([0.25, 0]);
+    commands.stopEmotion();
+    expect(sent.at(-1)).toMatchObject({ layer: 'emotion', replace: true });
+    expect(viewer.emotion).toBe('');
+  });
+
+  it('lets go of every layer on reset, and of what was about to be said', () => {
+    commands.set('muscles', 'mentalis.L', 1);
+    commands.reset();
+    drawFrame();
+    expect(sent.map(({ layer }) => layer)).toEqual(['idle', 'mood', 'emotion', 'speech', 'puppet']);
+    expect(commands.handsOff).toBe(false);
+  });
+});
+
+describe('Edits', () => {
+  it('sends one after the other, the newest of each key', async () => {
+    vi.useFakeTimers();
+    const log: string[] = [];
+    const send = (name: string, ms: number) => async () => {
+      log.push(`${name} starts`);
+      await new Promise((resolve) => setTimeout(resolve, ms));
+      log.push(`${name} ends`);
+    };
+    const edits = new Edits(vi.fn());
+    edits.edit('damping', send('old damping', 50));
+    edits.edit('damping', send('damping', 50));
+    edits.edit('plate', send('plate', 10));
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(log).toEqual(['damping starts', 'damping ends', 'plate starts', 'plate ends']);
+    vi.useRealTimers();
+  });
+
+  it('tells what was refused, and goes on', async () => {
+    vi.useFakeTimers();
+    const failed = vi.fn();
+    const next = vi.fn(() => Promise.resolve());
+    const edits = new Edits(failed);
+    edits.edit('damping', () => Promise.reject(new Error('too high')));
+    edits.edit('plate', next);
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(failed).toHaveBeenCalledExactlyOnceWith('damping', 'too high');
+    expect(next).toHaveBeenCalledOnce();
+    vi.useRealTimers();
+  });
+});
