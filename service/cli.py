@@ -11,7 +11,7 @@ import json
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import structlog
 import typer
@@ -76,9 +76,9 @@ def serve(
         _refuse(
             "risorius runs as one process, because sessions live in it; start it with one worker."
         )
-    given = {"host": host, "port": port}
+    asked: dict[str, Any] = {"host": host, "port": port}
     try:
-        settings = Settings(**{name: value for name, value in given.items() if value is not None})
+        settings = Settings(**{name: value for name, value in asked.items() if value is not None})
     except ValidationError as error:
         _refuse(f"A setting is not valid: {explain(list(error.errors()))}.")
     try:

@@ -62,7 +62,8 @@ def test_both_descriptions_of_the_frame_agree(stream: str) -> None:
     rows = re.findall(r"^\| (\w+) \| ([^|]+) \|", layout or "", re.M)[1:]
     assert len(rows) == 12
     for byte, kind in rows:
-        assert f"| {byte} | {kind.replace(' x ', ' \u00d7 ').strip()} |" in stream
+        typographic = kind.replace(" x ", " \u00d7 ").strip()
+        assert f"| {byte} | {typographic} |" in stream
 
 
 def test_the_reader_of_the_stream_reads_a_smile(stream: str, tmp_path: Path) -> None:
