@@ -7,11 +7,11 @@ name that points to this address (DNS rebinding) is not answered.
 
 from __future__ import annotations
 
+import re
 import secrets
 import time
 from collections import OrderedDict
 from collections.abc import Iterable
-from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -25,6 +25,7 @@ _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _WILDCARD = ("0.0.0.0", "::")
 _OPEN_PATHS = ("/api/health", "/api/ready")
 _CLIENTS_REMEMBERED = 4096
+_HOST = re.compile(r"(?:\[(?P<ipv6>[0-9a-f:.]+)\]|(?P<name>[a-z0-9._-]+))(?::\d{1,5})?")
 
 
 class Denied(Refused):
@@ -85,20 +86,21 @@ class Guard:
 
     def _admit(self, scope: Scope) -> None:
         headers = Headers(scope=scope)
-        host = headers.get("host", "")
+        # Two Host headers are nobody's: a proxy and this service might each believe another one.
+        host = ", ".join(headers.getlist("host"))
         if _host_name(host) not in self.hosts:
             raise Denied(
                 421,
                 "unknown_host",
                 f"this service does not answer for the host {host!r}; set RISORIUS_ALLOWED_HOSTS",
             )
-        origin = headers.get("origin")
-        if origin is not None and not self._own_origin(origin, host):
-            raise Denied(
-                403,
-                "forbidden_origin",
-                f"pages of {origin!r} may not use this service; set RISORIUS_ALLOWED_ORIGINS",
-            )
+        for origin in headers.getlist("origin"):
+            if not self._own_origin(origin, host):
+                raise Denied(
+                    403,
+                    "forbidden_origin",
+                    f"pages of {origin!r} may not use this service; set RISORIUS_ALLOWED_ORIGINS",
+                )
         client = self._identify(scope, headers)
         if not self.rate.allow(client):
             denied = Denied(429, "too_many_requests", "too many requests; try again in a second")
@@ -167,10 +169,8 @@ def _replay(body: bytes, receive: Receive) -> Receive:
 
 def _host_name(host: str) -> str:
     """Return the name in a Host header without its port, or nothing if it is malformed."""
-    try:
-        return (urlsplit(f"//{host}").hostname or "").lower()
-    except ValueError:
-        return ""
+    match = _HOST.fullmatch(host.lower())
+    return (match["ipv6"] or match["name"]) if match else ""
 
 
 def _offered_key(headers: Headers) -> str:

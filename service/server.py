@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import socket
 import threading
 import time
@@ -54,7 +55,13 @@ def server_of(app: FastAPI, settings: Settings) -> uvicorn.Server:
         server_header=False,
         timeout_graceful_shutdown=_SHUTDOWN_SECONDS,
     )
+    logging.getLogger("uvicorn.error").addFilter(_is_news)
     return uvicorn.Server(config)
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Drop what uvicorn says of every socket that is refused with a status, as it should be."""
+    return "without completing handshake" not in record.getMessage()
 
 
 def url_of(listener: socket.socket) -> str:

@@ -40,7 +40,18 @@ def test_a_foreign_page_has_no_socket(
     assert denied.value.status_code in (403, 421)
 
 
-@pytest.mark.parametrize("host", ["", "[", "localhost@evil.example", "localhost.evil.example"])
+@pytest.mark.parametrize(
+    "host",
+    [
+        "",
+        "[",
+        "localhost@evil.example",
+        "localhost.evil.example",
+        "localhost:1, evil.example",
+        "localhost:1:2",
+        "localhost/",
+    ],
+)
 def test_a_malformed_host_is_foreign(client: TestClient, host: str) -> None:
     assert client.get("/api/health", headers={"Host": host}).status_code == 421
 
