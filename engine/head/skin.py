@@ -23,8 +23,6 @@ LEVELS = {"low": 0, "medium": 1, "high": 2}
 
 # Height that the drawn lids keep over ball and cornea, mm; the first that names a vertex counts.
 LID_CLEARANCE = {"lid_margin": 0.22, "eyelid": 0.5, "orbital": 0.6, "lid_inner": 0.12}
-LEAST_CLEARANCE = 0.06
-"""Height below which a vertex is moved at rest already, mm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,17 +99,16 @@ def _finished(
 ) -> DrawnSurface:
     names = tuple(sorted(set(cage.regions)))
     regions = vertex_regions(cage, mesh, names)
-    vertices, lids = _lids_at_rest(cage, mesh, eyes)
     return DrawnSurface(
-        vertices=vertices,
-        normals=vertex_normals(vertices, mesh.triangles),
+        vertices=mesh.vertices,
+        normals=vertex_normals(mesh.vertices, mesh.triangles),
         triangles=mesh.triangles,
         colors=paint.colors[mesh.indices],
         hair=paint.hair[mesh.indices],
         regions=regions,
         region_names=names,
         map=carried,
-        lids=lids,
+        lids=_lid_contact(cage, mesh, eyes),
     )
 
 
@@ -125,28 +122,22 @@ def vertex_regions(cage: Cage, mesh: SkinMesh, names: Sequence[str]) -> IntArray
     return np.asarray(votes.argmax(axis=1))
 
 
-def _lids_at_rest(cage: Cage, mesh: SkinMesh, eyes: Sequence[Eye]) -> tuple[FloatArray, LidContact]:
-    """Return the vertices moved off the eyes and the contact that leaves them there at rest."""
+def _lid_contact(cage: Cage, mesh: SkinMesh, eyes: Sequence[Eye]) -> LidContact:
+    """Return the contact of the lids with the eyes, at ease at rest."""
     clearance = np.zeros(len(mesh.vertices))
     regions = np.array(cage.regions)[mesh.cage_faces]
     for kind, height in LID_CLEARANCE.items():
         named = np.char.endswith(regions, f"_{kind}")
         chosen = np.unique(mesh.triangles[named])
         clearance[chosen[clearance[chosen] == 0]] = height
-    lid_vertices = np.flatnonzero(clearance)
-    side = (mesh.vertices[lid_vertices, 0] < 0).astype(np.int64)
-    offsets = mesh.vertices[lid_vertices] - np.array([eye.center for eye in eyes])[side]
+    vertices = np.flatnonzero(clearance)
+    side = (mesh.vertices[vertices, 0] < 0).astype(np.int64)
+    offsets = mesh.vertices[vertices] - np.array([eye.center for eye in eyes])[side]
     in_front = offsets[:, 2] > 0
-    lid_vertices, side = lid_vertices[in_front], side[in_front]
+    vertices, side, offsets = vertices[in_front], side[in_front], offsets[in_front]
 
-    floor = LidContact(lid_vertices, side, np.full(len(side), LEAST_CLEARANCE))
-    vertices = mesh.vertices
-    for _ in range(4):  # the bulge under a vertex changes as it is pushed out
-        vertices = floor.project(vertices, eyes)
-    offsets = vertices[lid_vertices] - np.array([eye.center for eye in eyes])[side]
     radius = np.array([eye.radius for eye in eyes])[side]
-    bare = LidContact(lid_vertices, side, np.zeros(len(side)))
+    bare = LidContact(vertices, side, np.zeros(len(side)))
     height = np.linalg.norm(offsets, axis=1) - bare.least_radius(offsets, radius)
     # Nothing may move at rest, so no vertex is asked for more height than it has.
-    asked = np.minimum(clearance[lid_vertices], height - 1e-9)
-    return vertices, LidContact(lid_vertices, side, asked)
+    return LidContact(vertices, side, np.minimum(clearance[vertices], height - 1e-9))

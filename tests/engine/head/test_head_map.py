@@ -78,6 +78,7 @@ def test_paper_is_drawn_as_it_is_simulated(heads: dict[str, Head]) -> None:
     paper = heads["paper"]
     moved = smile(paper.points)
     np.testing.assert_array_equal(paper.drawn.map @ moved, moved)
+    np.testing.assert_array_equal(paper.drawn.vertices, paper.points)
     np.testing.assert_array_equal(paper.drawn.triangles, paper.triangles)
 
 
