@@ -300,21 +300,32 @@ class Sessions:
         while True:
             await asyncio.sleep(1 / _BEATS_PER_SECOND)
             beat += 1
-            for session in list(self._live.values()):
-                try:
-                    await self._tend(session, each_second=beat % _BEATS_PER_SECOND == 0)
-                except NotFound:
-                    continue  # It was closed while it was being tended.
-                except Exception:
-                    _LOG.exception("a session could not be tended", session=session.id)
+            each_second = beat % _BEATS_PER_SECOND == 0
+            # Side by side: each one waits for the simulation thread's next tick.
+            await asyncio.gather(
+                *(self._tend(session, each_second) for session in list(self._live.values()))
+            )
+            if beat % (60 * _BEATS_PER_SECOND) == 0:
+                used_before = time.time() - self._idle_seconds
+                self._store.remove_idle_sessions(used_before, but=list(self._live))
 
-    async def _tend(self, session: Session, *, each_second: bool) -> None:
+    async def _tend(self, session: Session, each_second: bool) -> None:
+        try:
+            await self._tell_state(session)
+            if each_second:
+                await self._each_second(session)
+        except NotFound:
+            return  # It was closed while it was being tended.
+        except Exception:
+            _LOG.exception("a session could not be tended", session=session.id)
+
+    async def _tell_state(self, session: Session) -> None:
         if session.viewers and (session.state_changed or not session.frame.asleep):
             session.state_changed = False
             view = await self._runner.view(session.id)
             session.tell({"type": "state", "tick": view.frame.tick, **view.report})
-        if not each_second:
-            return
+
+    async def _each_second(self, session: Session) -> None:
         for viewer in session.viewers:
             viewer.repeat_frame()
         if session.unsaved:

@@ -79,7 +79,7 @@ class Settings(BaseSettings):
         default=10_000, ge=1, description="Most keyframes accepted in one clip."
     )
     session_idle_seconds: float = Field(
-        default=86_400.0,
+        default=21_600.0,
         gt=0,
         allow_inf_nan=False,
         description="A session without viewer or command is closed after this time.",

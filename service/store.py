@@ -128,6 +128,12 @@ class Store:
         with self._session.begin() as session:
             session.execute(delete(SessionRow).where(SessionRow.id == session_id))
 
+    def remove_idle_sessions(self, used_before: float, *, but: Sequence[str]) -> None:
+        """Forget the sessions that nobody used since, except those of `but`."""
+        with self._session.begin() as session:
+            idle = SessionRow.used < used_before
+            session.execute(delete(SessionRow).where(idle, SessionRow.id.not_in(but)))
+
     def session(self, session_id: str) -> SessionRow | None:
         """Return the session of that id."""
         return self._get(SessionRow, session_id)

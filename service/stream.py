@@ -95,18 +95,21 @@ async def _receive(socket: WebSocket, parts: Components, session: Session, viewe
             viewer.offer(_error("invalid_message", "send JSON in text frames"))
         elif len(text) > parts.settings.max_message_bytes:
             viewer.end(_TOO_BIG, "the message is too big")
-        elif not parts.rate.allow(client):
-            viewer.offer(_error("too_many_requests", "too many messages; slow down"))
         else:
-            await _obey(text, parts, session, viewer)
+            await _obey(text, client, parts, session, viewer)
 
 
-async def _obey(text: str, parts: Components, session: Session, viewer: Viewer) -> None:
+async def _obey(
+    text: str, client: str, parts: Components, session: Session, viewer: Viewer
+) -> None:
     """Do what one message says; whatever is wrong with it is said back."""
     try:
         message = MESSAGE.validate_json(text)
         if isinstance(message, AckMessage):
             viewer.acknowledge(message.tick)
+            return
+        if not parts.rate.allow(client):
+            viewer.offer(_error("too_many_requests", "too many messages; slow down"))
             return
         if isinstance(message, ControlsMessage):
             keyframe = controls_keyframe(message, replace=message.replace)
