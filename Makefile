@@ -1,0 +1,72 @@
+# Everything from a fresh clone: `make run` serves, `make test` tests. A stamp file marks each
+# finished step in .stamps/, so that a second call starts at once.
+
+PORT ?= 8000
+PYTHON ?= python3
+BIN := .venv/bin
+STAMPS := .stamps
+VIEWER_SOURCES := $(shell find static -path static/node_modules -prune -o -type f -print)
+
+.PHONY: run test check bench sheet measure lock clean chromium
+
+run: $(STAMPS)/python $(STAMPS)/viewer
+	$(BIN)/risorius serve --port $(PORT)
+
+test: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
+	npm --prefix static test
+	$(BIN)/pytest
+
+check: $(STAMPS)/python-dev $(STAMPS)/node
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	npm --prefix static run check
+
+bench: $(STAMPS)/python
+	$(BIN)/risorius bench
+
+measure: $(STAMPS)/python
+	$(BIN)/risorius measure
+
+sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
+	$(BIN)/risorius sheet -o docs/expressions.png
+
+# Chromium for the browser test: the system's, else Debian's, else Playwright's own.
+chromium: $(STAMPS)/python-dev
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null \
+	|| { [ "$$(id -u)" = 0 ] && apt-get update -qq && apt-get install -y -qq chromium >/dev/null; } \
+	|| $(BIN)/playwright install chromium \
+	|| echo "Chromium is missing and could not be installed: the browser tests will be skipped."
+
+lock: $(STAMPS)/python-dev
+	$(BIN)/pip install --quiet pip-tools
+	$(BIN)/pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras --all-build-deps \
+		--no-emit-index-url --no-emit-trusted-host --no-emit-find-links -o requirements.lock pyproject.toml
+	$(BIN)/pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras --all-build-deps \
+		--extra dev --no-emit-index-url --no-emit-trusted-host --no-emit-find-links \
+		-c requirements.lock -o requirements-dev.lock pyproject.toml
+
+clean:
+	rm -rf .venv $(STAMPS) static/node_modules service/viewer
+
+$(STAMPS)/venv:
+	$(PYTHON) -m venv .venv
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/python: requirements.lock pyproject.toml | $(STAMPS)/venv
+	$(BIN)/pip install --quiet --require-hashes -r requirements.lock
+	RISORIUS_SKIP_VIEWER=1 $(BIN)/pip install --quiet --no-deps --no-build-isolation -e .
+	@touch $@
+
+$(STAMPS)/python-dev: requirements-dev.lock $(STAMPS)/python
+	$(BIN)/pip install --quiet --require-hashes -r requirements-dev.lock
+	@touch $@
+
+$(STAMPS)/node: static/package-lock.json | $(STAMPS)/venv
+	npm --prefix static ci --no-audit --no-fund
+	@touch $@
+
+$(STAMPS)/viewer: $(STAMPS)/node $(VIEWER_SOURCES)
+	npm --prefix static run build
+	@touch $@
