@@ -462,6 +462,23 @@ def add_muscle_forces(x: FloatArray, pull: Pull, force: FloatArray) -> None:
 
 
 @kernel
+def add_basis_forces(basis: FloatArray, activations: FloatArray, force: FloatArray) -> None:
+    """Add the muscles' rest-pose forces on the hypodermis (mode "rest"): Σ a_m B_m.
+
+    In the order of the muscles, whatever library or thread count: the same bits everywhere.
+    """
+    n = basis.shape[2]
+    base = force.shape[1] - n
+    for m in range(basis.shape[0]):
+        a = activations[m]
+        if a == 0.0:
+            continue
+        for c in range(3):
+            for i in range(n):
+                force[c, base + i] += a * basis[m, c, i]
+
+
+@kernel
 def static_forces(
     x: FloatArray, tissue: Tissue, skull: Skull, pull: Pull, tension: FloatArray, force: FloatArray
 ) -> None:
@@ -554,7 +571,8 @@ def resolve_teeth(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
             continue
         slope = arch[cell + 1] - arch[cell]
         front = arch[cell] + (lateral - cell) * slope + contacts.tooth_clearance[q]
-        nx = -slope if x[0, i] > 0.0 else slope
+        # Level in the middle: a kink there would push the midline to one side.
+        nx = -slope * min(max(x[0, i], -1.0), 1.0)
         ny = 0.0
         if x[1, i] < contacts.arch_bottom:
             # Below the edge of the upper teeth a dropping lower lip may swing back with the jaw.

@@ -10,7 +10,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .assembly import Assembly, compile_rig
-from .dynamics import Pull, Skull, Workspace, advance, workspace
+from .dynamics import Pull, Skull, Workspace, add_basis_forces, advance, workspace
 from .errors import InvalidValue, UnknownName
 from .frame import Frame, Pose
 from .mixing import Mixer
@@ -235,8 +235,7 @@ class Simulator:
                 pull.share[active],
             )
         load = state.skull.load.copy()
-        n = assembly.tissue.node_count
-        load[:, 2 * n :] += np.tensordot(activations, assembly.basis, axes=1)
+        add_basis_forces(assembly.basis, activations, load)
         return state.skull._replace(load=load), assembly.pull
 
     def _judge(self, state: FaceState) -> None:

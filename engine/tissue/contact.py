@@ -64,15 +64,13 @@ def ring_and_spoke(name: str) -> tuple[str, int, str]:
 def lids_of(head: Head) -> Lids:
     """Return the lid nodes of `head`; none where it has no eyes."""
     nodes, channel, share, centers, tarsal = [], [], [], [], []
+    fissure = _fissure(head)
     for node, name in enumerate(head.names[: head.sheet_count]):
         ring, spoke, side = ring_and_spoke(name)
         if ring not in LID_SHARE or not head.eyes:
             continue
         upper = 0 < spoke < LID_SPOKES // 2
-        # The margins are arcs that meet at the canthi: full turn in the middle, none there.
-        around = spoke if upper else LID_SPOKES - spoke
-        still = spoke in (0, LID_SPOKES // 2)
-        bend = 0.0 if still else math.sin(math.pi * around / (LID_SPOKES // 2)) ** 0.6
+        bend = fissure[side][spoke if upper else LID_SPOKES - spoke]
         nodes.append(node)
         channel.append((0 if upper else 1) + (2 if side == "R" else 0))
         share.append(LID_SHARE[ring] * bend * (1.0 if upper else -1.0))
@@ -85,6 +83,24 @@ def lids_of(head: Head) -> Lids:
         np.array(centers).reshape(-1, 3),
         np.array(tarsal, dtype=bool),
     )
+
+
+def _fissure(head: Head) -> dict[str, FloatArray]:
+    """Return the opening at each spoke as a share of that in the middle, by side, shape (17,).
+
+    Lids that turn in this proportion meet along their whole length at once; at the canthi, where
+    they are joined, they do not turn.
+    """
+    index = {name: node for node, name in enumerate(head.names) if name}
+    openings = {}
+    for side, eye in zip("LR", head.eyes, strict=False):
+        opening = np.zeros(LID_SPOKES + 1)
+        for spoke in range(1, LID_SPOKES // 2):
+            ends = (f"E1_{spoke}.{side}", f"E1_{LID_SPOKES - spoke}.{side}")
+            above, below = (head.points[index[end]] - eye.center for end in ends)
+            opening[spoke] = math.atan2(above[1], above[2]) - math.atan2(below[1], below[2])
+        openings[side] = opening / max(opening[LID_SPOKES // 4], 1e-9)
+    return openings
 
 
 def contacts_of(head: Head) -> Contacts:
