@@ -67,7 +67,7 @@ const DEFAULT_GRID = 2e-5;
 const MOUTH_TOP = -0.04;
 const LIPS = 0.094;
 const THROAT = 0.045;
-const DARKEST = 0.2;
+const DARKEST = { wet: 0.2, teeth: 0.5 };
 /** A face that reaches lower than this [m] has a neck, which fades over so many mm. */
 const NECK_BELOW = -0.14;
 const NECK_FADE = 58;
@@ -293,7 +293,7 @@ function dress(root: Object3D): void {
   for (const mesh of meshes(root)) {
     const kind = (mesh.userData.material as string | undefined) ?? 'skin';
     const inMouth = (kind === 'wet' || kind === 'teeth') && isInMouth(mesh);
-    if (inMouth) darkenThroat(mesh);
+    if (inMouth) darkenThroat(mesh, DARKEST[kind]);
     mesh.visible = mesh.userData.role !== 'tissue';
     mesh.material = createMaterial(kind, {
       vertexColors: mesh.geometry.hasAttribute('color'),
@@ -317,14 +317,14 @@ function isInMouth(mesh: Mesh<BufferGeometry>): boolean {
 }
 
 /** Light hardly reaches the throat, and a shadow map alone does not show it. */
-function darkenThroat(mesh: Mesh<BufferGeometry>): void {
+function darkenThroat(mesh: Mesh<BufferGeometry>, darkest: number): void {
   const positions = mesh.geometry.getAttribute('position');
   const colors = mesh.geometry.getAttribute('color') as BufferAttribute | undefined;
   if (colors === undefined) return;
   const at = new Vector3();
   for (let i = 0; i < positions.count; i++) {
     mesh.localToWorld(at.fromBufferAttribute(positions, i));
-    const light = MathUtils.lerp(DARKEST, 1, MathUtils.smoothstep(at.z, THROAT, LIPS));
+    const light = MathUtils.lerp(darkest, 1, MathUtils.smoothstep(at.z, THROAT, LIPS));
     colors.setXYZ(i, colors.getX(i) * light, colors.getY(i) * light, colors.getZ(i) * light);
   }
 }

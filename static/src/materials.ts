@@ -51,9 +51,8 @@ export function createMaterial(
     case 'teeth':
       return new MeshPhysicalMaterial({
         vertexColors,
-        roughness: 0.3,
-        clearcoat: 0.25,
-        clearcoatRoughness: 0.2,
+        roughness: 0.38,
+        specularIntensity: 0.45,
         envMapIntensity,
       });
     case 'hair':
