@@ -12,7 +12,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.middleware.cors import CORSMiddleware
 from starlette.exceptions import HTTPException
 from starlette.responses import PlainTextResponse, Response
-from starlette.routing import Match, Mount
+from starlette.routing import Match, Mount, compile_path
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
@@ -127,13 +127,25 @@ def _answer_errors(app: FastAPI) -> None:
         return json_response(body, status=422)
 
     @app.exception_handler(HTTPException)
-    async def http_error(_request: Request, error: HTTPException) -> Response:
+    async def http_error(request: Request, error: HTTPException) -> Response:
         name = HTTPStatus(error.status_code).phrase.lower().replace(" ", "_")
+        headers = dict(error.headers or {})
+        if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+            headers["Allow"] = ", ".join(_methods(app, request.url.path)) or "GET, HEAD"
         body = error_body(name, str(error.detail))
-        return json_response(body, status=error.status_code, headers=error.headers)
+        return json_response(body, status=error.status_code, headers=headers)
 
     @app.exception_handler(Exception)
     async def failed(request: Request, error: Exception) -> Response:
         _LOG.error("a request failed", path=request.url.path, exc_info=error)
         message = "the service failed; its log says why"
         return json_response(error_body("internal", message), status=500)
+
+
+def _methods(app: FastAPI, path: str) -> list[str]:
+    """Return every method of a path; the router names those of one route only."""
+    methods: set[str] = set()
+    for template, described in app.openapi()["paths"].items():
+        if compile_path(template)[0].fullmatch(path):
+            methods |= {method.upper() for method in described}
+    return sorted(methods)

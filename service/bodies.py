@@ -102,7 +102,7 @@ class Controls(Body):
     fade: Seconds = Field(default=0.0, description="Seconds until the commands are reached.")
     layer: LayerName = "puppet"
     weight: Share = 1.0
-    ttl: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=86_400)] | None = Field(
+    ttl: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = Field(
         default=None, description="Seconds after which the commands lapse."
     )
 
@@ -159,7 +159,7 @@ class NewRig(Body):
 class KeyframeBody(Controls):
     """One keyframe of a clip: the time at which it starts, and the controls it moves."""
 
-    time: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=86_400)]
+    time: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=3600)]
     replace: StrictBool = False
     emotion: Name | EmotionCommand | None = None
 
@@ -170,7 +170,7 @@ class NewClip(Body):
     rig: Name = "standard"
     fps: Annotated[int, Field(ge=1, le=60)] = 30
     timeline: list[KeyframeBody]
-    duration: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)] | None = None
+    duration: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = None
     model: ModelChoice = ModelChoice()
 
 

@@ -33,9 +33,22 @@ _REFUSED = 2
 
 def main() -> None:
     """Run the command line."""
-    # Set before numba is imported: it would print to the same place as the answer.
-    structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
+    _log_to_stderr()
     app()
+
+
+def _log_to_stderr() -> None:
+    """Keep the log apart from answers, with short tracebacks: the arrays of a rig fill books."""
+    structlog.configure(
+        processors=[
+            structlog.processors.add_log_level,
+            structlog.processors.TimeStamper(fmt="%Y-%m-%d %H:%M:%S"),
+            structlog.dev.ConsoleRenderer(
+                colors=False, exception_formatter=structlog.dev.plain_traceback
+            ),
+        ],
+        logger_factory=structlog.PrintLoggerFactory(sys.stderr),
+    )
 
 
 def _refuse(sentence: str) -> NoReturn:

@@ -89,6 +89,7 @@ def test_a_track_is_not_available_yet(client: TestClient) -> None:
         {"timeline": [{"time": 0, "emotion": {}}]},
         {"duration": 0},
         {"duration": 1e6},
+        {"timeline": [{"time": 0, "emotion": "joy", "ttl": 5000}]},
         {"duration": None, "timeline": [{"time": 80_000}]},
         {"more": 1},
     ],

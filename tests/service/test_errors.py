@@ -47,7 +47,24 @@ def test_errors_have_one_shape(client: TestClient, method: str, path: str, statu
     assert answer.status_code == status
     assert_shape(answer)
     if status == 405:
-        assert answer.headers["Allow"]
+        assert "OPTIONS" not in answer.headers["Allow"]
+
+
+@pytest.mark.parametrize(
+    ("path", "allowed"),
+    [
+        ("/api/rigs", "GET, POST"),
+        ("/api/sessions/a/controls", "PATCH, PUT"),
+        ("/api/clips/a", "DELETE, GET"),
+        ("/api/clips/a.glb", "GET"),
+    ],
+)
+def test_a_wrong_method_is_told_every_right_one(
+    client: TestClient, path: str, allowed: str
+) -> None:
+    answer = client.options(path)
+    assert answer.status_code == 405
+    assert set(allowed.split(", ")) <= set(answer.headers["Allow"].split(", "))
 
 
 @pytest.mark.parametrize(("method", "path"), ROUTES)
