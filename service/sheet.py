@@ -121,7 +121,8 @@ def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
         poses[emotion["name"]] = Pose(label, {}, emotion["name"])
     if not only:
         return list(poses.values())
-    return [poses.get(name, Pose(name, {"facs": name})) for name in only]
+    words = {word: emotion["name"] for emotion in rig["emotions"] for word in emotion["synonyms"]}
+    return [poses.get(words.get(name, name), Pose(name, {"facs": name})) for name in only]
 
 
 def _photograph(

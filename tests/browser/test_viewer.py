@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+from PIL import Image, ImageChops  # noqa: E402
 
 from service.app import create_app  # noqa: E402
 from service.browser import NoBrowser, chromium  # noqa: E402
@@ -108,3 +112,22 @@ def test_the_paper_s_face_opens(page: playwright_api.Page, url: str, tmp_path: P
     assert page.evaluate("() => window.__viewer.rig") == rig
     picture = page.screenshot(path=tmp_path / "paper.png")
     assert len(set(picture)) > 1
+
+
+@pytest.mark.usefixtures("browser")
+def test_a_sheet_is_drawn(tmp_path: Path) -> None:
+    output = tmp_path / "sheet.png"
+    command = [sys.executable, "-m", "service", "sheet", "-o", str(output)]
+    done = subprocess.run(
+        [*command, "--size", "160", "--only", "rest,AU26,joy"],
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    with Image.open(output) as sheet:
+        assert sheet.size == (480, 174)
+        rest, jaw_drop = (sheet.crop((left, 0, left + 160, 160)) for left in (0, 160))
+        assert ImageChops.difference(rest, jaw_drop).getbbox() is not None

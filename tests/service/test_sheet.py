@@ -1,0 +1,46 @@
+"""Contact sheets: which poses they have, and how pictures are laid out."""
+
+from __future__ import annotations
+
+import io
+
+from PIL import Image
+
+from service.sheet import poses_of, tile
+
+RIG = {
+    "action_units": [{"name": "AU1", "title": "Inner brow raiser"}],
+    "emotions": [{"name": "happiness", "recipe": "6D+12E", "synonyms": ["joy"]}],
+}
+
+
+def png(color: tuple[int, int, int]) -> bytes:
+    buffer = io.BytesIO()
+    Image.new("RGB", (50, 40), color).save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+def test_a_sheet_has_rest_units_and_emotions() -> None:
+    poses = poses_of(RIG, ())
+    assert [pose.label for pose in poses] == ["rest", "AU1 Inner brow raiser", "happiness 6D+12E"]
+    assert poses[1].controls == {"action_units": {"AU1": 1.0}}
+    assert poses[2].emotion == "happiness"
+
+
+def test_a_sheet_has_only_what_is_asked() -> None:
+    poses = poses_of(RIG, ("joy", "1C+L12D"))
+    assert poses[0].emotion == "happiness"
+    assert poses[1].controls == {"facs": "1C+L12D"}
+
+
+def test_pictures_are_laid_out_in_rows() -> None:
+    colors = [(255, 0, 0), (0, 255, 0), (0, 0, 255)]
+    sheet = tile([("name", png(color)) for color in colors], columns=2, size=100)
+    assert sheet.size == (200, 2 * 114)
+    assert sheet.getpixel((50, 50)) == colors[0]
+    assert sheet.getpixel((150, 50)) == colors[1]
+    assert sheet.getpixel((50, 164)) == colors[2]
+
+
+def test_few_pictures_make_a_narrow_sheet() -> None:
+    assert tile([("one", png((1, 2, 3)))], columns=8, size=64).width == 64
