@@ -144,8 +144,7 @@ def _answer_errors(app: FastAPI) -> None:
 
 def _methods(app: FastAPI, path: str) -> list[str]:
     """Return every method of a path; the router names those of one route only."""
-    methods: set[str] = set()
-    for template, described in app.openapi()["paths"].items():
-        if compile_path(template)[0].fullmatch(path):
-            methods |= {method.upper() for method in described}
-    return sorted(methods)
+    paths = app.openapi()["paths"]
+    matching = [template for template in paths if compile_path(template)[0].fullmatch(path)]
+    # `/clips/{clip}.glb` says more than `/clips/{clip}`, which matches its paths too.
+    return sorted(method.upper() for method in paths[max(matching, key=len)]) if matching else []

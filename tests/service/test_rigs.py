@@ -41,6 +41,18 @@ def test_a_file_is_sent_once(client: TestClient, file: str) -> None:
     assert again.content == b""
 
 
+def test_a_rig_s_file_has_its_units_as_targets(client: TestClient) -> None:
+    answer = client.get("/api/rigs/standard.glb")
+    assert answer.status_code == 200, answer.text
+    rig = client.get("/api/rigs/standard").json()
+    assert answer.headers["ETag"] == f'"{rig["id"]}"'
+    meshes = glb_json(answer.content)["meshes"]
+    names = [mesh["extras"]["targetNames"] for mesh in meshes if mesh.get("extras")]
+    assert {unit["name"] for unit in rig["action_units"]} <= set(names[0])
+    tag = {"If-None-Match": answer.headers["ETag"]}
+    assert client.get("/api/rigs/standard.glb", headers=tag).status_code == 304
+
+
 def test_the_surface_is_tagged_by_the_rig(client: TestClient) -> None:
     rig = client.get("/api/rigs/standard").json()["id"]
     assert client.get("/api/rigs/standard/surface.glb").headers["ETag"] == f'"{rig}"'
