@@ -20,6 +20,8 @@ from .facs import LETTERS, ActionUnit, Term, format_facs, parse_facs
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .jaw import JawHinge
+from .measure import measure_units
+from .quality import judge
 from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig
 from .simulator import FaceState, Simulator
 from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
@@ -57,6 +59,8 @@ __all__ = [
     "clip_to_glb",
     "face_to_glb",
     "format_facs",
+    "judge",
+    "measure_units",
     "parse_facs",
     "record",
     "rig_to_glb",

@@ -1,4 +1,4 @@
-"""The command line: serve, clip, sheet, bench.
+"""The command line: serve, clip, sheet, bench, measure, warm.
 
 Every command ends with 0, or with 2 and one clear sentence.
 """
@@ -183,6 +183,42 @@ def bench(
         typer.echo(json.dumps(figures, indent=2, allow_nan=False))
     else:
         Console(highlight=False).print(table(figures))
+
+
+@app.command()
+def measure(
+    rig: Annotated[str, typer.Option(help="Rig to measure: standard or paper.")] = "standard",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Measure the action units against human motion, and how well the tissue behaves."""
+    from engine import EngineError, builtin_rig
+
+    from .measuring import markdown, measure_rig
+
+    try:
+        with _console.status("measuring") as status:
+            figures = measure_rig(
+                builtin_rig(rig), lambda stage: status.update(f"measuring {stage}")
+            )
+    except EngineError as error:
+        _refuse(f"The rig cannot be measured: {error}.")
+    typer.echo(json.dumps(figures, indent=2, allow_nan=False) if as_json else markdown(figures))
+
+
+@app.command()
+def warm() -> None:
+    """Compile the kernels and build the rigs into the cache, so that the next start is quick."""
+    from engine import BUILTIN_RIGS, Keyframe, Simulator, builtin_rig, surface_to_glb
+
+    for name in BUILTIN_RIGS:
+        with _console.status(f"warming the {name} rig"):
+            rig = builtin_rig(name)
+            simulator = Simulator(rig)
+            simulator.add("face")
+            simulator.apply("face", Keyframe(action_units={"AU12": 1.0}))
+            simulator.step()
+            surface_to_glb(rig)
+    _console.print("The kernels are compiled and the rigs are built.")
 
 
 def _asked_workers() -> int:

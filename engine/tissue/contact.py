@@ -31,6 +31,9 @@ LID_SHARE = {"EB": 1.0, "E0": 1.0, "E1": 1.0, "E2": 0.5}
 """Share of the lid's angle that each ring's skull side turns by."""
 TARSAL_RINGS = ("E0", "E1")
 """Rings that are cartilage: moved with the lid, not by forces."""
+CANTHAL_HOLD = {1: 0.60, 6: 0.90, 7: 0.75}
+"""Greatest turn, as a share of the middle's, by the spokes next to the canthi: farther, the skin
+folds over its joined end."""
 LID_SPOKES = 16
 """Points of an eye ring run from 0, inner canthus, over 4, top, and 8, outer canthus, to 12."""
 
@@ -99,7 +102,10 @@ def _fissure(head: Head) -> dict[str, FloatArray]:
             ends = (f"E1_{spoke}.{side}", f"E1_{LID_SPOKES - spoke}.{side}")
             above, below = (head.points[index[end]] - eye.center for end in ends)
             opening[spoke] = math.atan2(above[1], above[2]) - math.atan2(below[1], below[2])
-        openings[side] = opening / max(opening[LID_SPOKES // 4], 1e-9)
+        share = opening / max(opening[LID_SPOKES // 4], 1e-9)
+        for spoke, most in CANTHAL_HOLD.items():
+            share[spoke] = min(share[spoke], most)
+        openings[side] = share
     return openings
 
 

@@ -1,0 +1,85 @@
+"""The table of action units against human motion, and how well the tissue behaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from engine import Keyframe, Rig, judge, measure_units
+
+Stage = Callable[[str], None]
+
+
+def measure_rig(rig: Rig, show: Stage) -> dict[str, Any]:
+    """Return every landmark of the rig's action units, and each expression's figures.
+
+    Args:
+        rig: A rig with named points.
+        show: Told what is being measured.
+    """
+    show("action units")
+    landmarks = [
+        {
+            "action_unit": m.landmark.unit,
+            "what": m.landmark.what,
+            "low_mm": m.landmark.low,
+            "high_mm": m.landmark.high,
+            "measured_mm": round(m.value, 2),
+            "direction_right": m.direction_right,
+            "in_range": m.in_range,
+        }
+        for m in measure_units(rig)
+    ]
+    show("tissue")
+    expressions = {unit: Keyframe(action_units={unit: 1.0}) for unit in rig.action_units}
+    expressions |= {
+        label: Keyframe(emotion=(label, 1.0))
+        for label, emotion in rig.emotions.items()
+        if emotion.recipe
+    }
+    judged = judge(rig, list(expressions.values()))
+    quality = [
+        {
+            "expression": name,
+            "folded_triangles": q.folded,
+            "roughness": round(q.roughness, 3),
+            "asymmetry_mm": round(q.asymmetry, 3),
+            "residual_speed_mm_s": round(q.residual_speed, 3),
+            "settling_ms": round(1000.0 * q.settling_share),
+            "path_dependence_mm": round(q.path, 3),
+        }
+        for name, q in zip(expressions, judged, strict=True)
+    ]
+    return {"rig": rig.id, "landmarks": landmarks, "tissue": quality}
+
+
+def markdown(figures: dict[str, Any]) -> str:
+    """Return the figures as two Markdown tables."""
+    lines = [
+        "| AU | landmark | human motion, mm | measured, mm |",
+        "|---|---|---|---|",
+    ]
+    for row in figures["landmarks"]:
+        verdict = (
+            "" if row["in_range"] else (" (out)" if row["direction_right"] else " (WRONG WAY)")
+        )
+        lines.append(
+            f"| {row['action_unit']} | {row['what']} | {_span(row['low_mm'], row['high_mm'])} "
+            f"| {row['measured_mm']:.1f}{verdict} |"
+        )
+    lines += [
+        "",
+        "| expression | folded | roughness | asymmetry, mm | rest, mm/s | settling, ms | path, mm |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in figures["tissue"]:
+        lines.append(
+            f"| {row['expression']} | {row['folded_triangles']} | {row['roughness']:.3f} "
+            f"| {row['asymmetry_mm']:.2f} | {row['residual_speed_mm_s']:.2f} "
+            f"| {row['settling_ms']} | {row['path_dependence_mm']:.2f} |"
+        )
+    return "\n".join(lines)
+
+
+def _span(low: float, high: float) -> str:
+    return f"up to {high:g}" if low < 0 else f"{low:g} to {high:g}"
