@@ -20,6 +20,7 @@ from .facs import LETTERS, ActionUnit, Term, format_facs, parse_facs
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .jaw import JawHinge
+from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import measure_units
 from .quality import judge
 from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig
@@ -28,6 +29,7 @@ from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
 
 __all__ = [
     "BUILTIN_RIGS",
+    "LANDMARKS_68",
     "LAYERS",
     "LETTERS",
     "MODEL_CHOICES",
@@ -60,6 +62,7 @@ __all__ = [
     "face_to_glb",
     "format_facs",
     "judge",
+    "landmarks_68",
     "measure_units",
     "parse_facs",
     "record",

@@ -7,7 +7,7 @@ import io
 
 import numpy as np
 
-from engine import Clip, Timeline
+from engine import Clip, Timeline, landmarks_68
 
 from .commanded import commanded_units
 
@@ -28,13 +28,12 @@ _POSE = (
 def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
     """Return a table: frame, time [s], commanded units, activation of each muscle, pose, landmarks.
 
-    Landmarks are on the drawn skin, in the head's frame [mm], before the head's pose.
+    The 68 landmarks are numbered as trackers number them, `x_0` to `z_67`, in the head's frame
+    [mm], before the head's pose.
     """
     head = clip.rig.head
     times = [index / clip.fps for index in range(len(clip.displacements))]
     unit_names, units = commanded_units(timeline, clip.rig, times)
-    names = list(head.landmarks)
-    places = np.array([head.landmarks[name] for name in names], dtype=np.int64)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(
@@ -44,12 +43,12 @@ def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
             *unit_names,
             *clip.rig.muscle_names,
             *_POSE,
-            *(f"{name}.{axis}" for name in names for axis in "xyz"),
+            *(f"{axis}_{number}" for number in range(68) for axis in "xyz"),
         ]
     )
     for index, displacements in enumerate(clip.displacements):
         pose = clip.poses[index]
-        drawn = head.drawn.deform(displacements.astype(np.float64), head.eyes)[places]
+        landmarks = landmarks_68(head, displacements.astype(np.float64))
         table.writerow(
             [
                 index,
@@ -58,7 +57,7 @@ def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
                 *(f"{value:.4f}" for value in clip.activations[index]),
                 *(f"{value:.3f}" for value in (pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)),
                 *(f"{value:.3f}" for value in (*pose.gaze_left, *pose.gaze_right, *pose.head)),
-                *(f"{value:.3f}" for value in drawn.ravel()),
+                *(f"{value:.3f}" for value in landmarks.ravel()),
             ]
         )
     return text.getvalue()

@@ -69,7 +69,7 @@ def markdown(figures: dict[str, Any]) -> str:
         )
     lines += [
         "",
-        "| expression | folded | roughness | asymmetry, mm | rest, mm/s | settling, ms | path, mm |",
+        "| expression | folded | roughness | asymmetry, mm | mm/s | settling, ms | path, mm |",
         "|---|---|---|---|---|---|---|",
     ]
     for row in figures["tissue"]:

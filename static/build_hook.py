@@ -13,8 +13,8 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 class ViewerBuildHook(BuildHookInterface):  # type: ignore[type-arg]
     """Runs `npm ci` and `npm run build` in `static/`, which writes `service/viewer/`.
 
-    Without npm the package installs all the same: the service then says at `/` that the viewer is
-    not built, and how to build it. RISORIUS_SKIP_VIEWER=1 leaves it to somebody else (make, Docker).
+    Without npm the package installs all the same; the service then says at `/` that the viewer is
+    not built, and how to build it. RISORIUS_SKIP_VIEWER=1 leaves the build to make or Docker.
     """
 
     def initialize(self, version: str, build_data: dict[str, object]) -> None:
