@@ -10,7 +10,7 @@ import numpy as np
 from .arrays import FloatArray
 from .dynamics import TABLEAUS, Pull
 from .errors import InvalidValue
-from .force_basis import moving_pull, rest_basis
+from .force_basis import jaw_rides, moving_pull, rest_basis
 from .muscle import LidMuscle
 from .rig import Model, Rig
 from .stability import largest_frequency, least_substeps
@@ -28,6 +28,7 @@ class Assembly:
         tissue: Layers, springs, terms, contact.
         basis: Muscle forces at activation 1 in mode "rest", shape (m, 3, n).
         pull: The muscles in mode "current"; empty in mode "rest".
+        rides: Share of the jaw that each muscle's two ends turn by, shape (m, 2).
         substeps: Integration steps a tick.
         omega: Fastest mode, rad/s.
         lid_angles: Turn of upper and lower lid at activation 1 of each muscle, degrees,
@@ -40,6 +41,7 @@ class Assembly:
     tissue: TissueModel
     basis: FloatArray
     pull: Pull
+    rides: FloatArray
     substeps: int
     omega: float
     lid_angles: FloatArray
@@ -81,6 +83,7 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
         pull=moving_pull(head, tissue, rig.muscles, ring=model.sphincter)
         if moving
         else no_pull(tissue.node_count),
+        rides=jaw_rides(head, rig.muscles),
         substeps=substeps or least,
         omega=omega,
         lid_angles=_lid_angles(rig),

@@ -202,7 +202,7 @@ class Pull(NamedTuple):
 
     Attributes:
         kinds: 0 linear, 1 sphincter, 2 sheet, shape (m,).
-        shape: Geometry, shape (m, 16); see `engine.force_basis`.
+        shape: Geometry, shape (m, 21); see `engine.force_basis`.
         scale: Force scale times activation, shape (m,).
         share: Each node's share of the muscle, shape (m, n).
     """
@@ -414,6 +414,44 @@ def longitudinal(along: float, reach: float, strength: float) -> float:
 
 
 @kernel
+def ring_weight(rx: float, ry: float, rz: float, g: FloatArray) -> float:
+    """Return Θ(r) at an offset from a sphincter's plane point (Eqs. 11-12), 0 outside its zone."""
+    out = rx * g[16] + ry * g[17] + rz * g[18]
+    across = (rx * g[3] + ry * g[4] + rz * g[5]) / g[12]
+    up = (rx * g[6] + ry * g[7] + rz * g[8]) / g[13]
+    radius = math.sqrt(across * across + up * up)
+    if radius > 1.0 or abs(out) >= g[19]:
+        return 0.0
+    if g[14] > 0.0:
+        weight = math.cos((1.0 - radius) * (math.pi / 2.0))
+    elif radius <= g[15]:
+        weight = math.sin(radius / g[15] * (math.pi / 2.0))
+    else:
+        weight = math.cos((radius - g[15]) / (1.0 - g[15]) * (math.pi / 2.0))
+    if g[20] > 0.0:
+        safe = max(radius, 1e-9)
+        sine, cosine = g[12] * up / safe, g[13] * across / safe
+        bend = max(sine * sine + cosine * cosine, min(g[12], g[13]) ** 2)
+        curvature = (g[13] * g[13] / bend) ** 1.5
+        weight *= (1.0 - g[20]) + g[20] * curvature
+    return weight
+
+
+@kernel
+def sheet_weight(rx: float, ry: float, rz: float, g: FloatArray) -> float:
+    """Return Θ(λ) at an offset from a sheet's attachment (Eqs. 15-17), 0 outside its width W."""
+    across = rx * g[9] + ry * g[10] + rz * g[11]
+    if g[14] > 0.0 and across < 0.0:
+        fade = 0.0
+    else:
+        fade = min(max((abs(across) / g[12] - (1.0 - g[13])) / (2.0 * g[13]), 0.0), 1.0)
+    if fade >= 1.0:
+        return 0.0
+    weight = longitudinal(-(rx * g[3] + ry * g[4] + rz * g[5]) / g[6], g[7], g[8])
+    return weight * math.cos(fade * math.pi / 2.0) ** 2
+
+
+@kernel
 def add_muscle_forces(x: FloatArray, pull: Pull, force: FloatArray) -> None:
     """Add the muscles' forces at the skin's present place (mode "current", Eqs. 1-17).
 
@@ -438,24 +476,15 @@ def add_muscle_forces(x: FloatArray, pull: Pull, force: FloatArray) -> None:
                 weight *= math.cos(g[7] * across) * math.cos(across * (math.pi / 2.0))
                 dx, dy, dz = -rx / distance, -ry / distance, -rz / distance
             elif pull.kinds[m] == 1:
-                across = (rx * g[3] + ry * g[4] + rz * g[5]) / g[12]
-                up = (rx * g[6] + ry * g[7] + rz * g[8]) / g[13]
-                radius = math.sqrt(across * across + up * up)
-                if radius > 1.0:
-                    continue
-                if g[14] > 0.0:
-                    weight = math.cos((1.0 - radius) * (math.pi / 2.0))
-                elif radius <= g[15]:
-                    weight = math.sin(radius / g[15] * (math.pi / 2.0))
-                else:
-                    weight = math.cos((radius - g[15]) / (1.0 - g[15]) * (math.pi / 2.0))
+                weight = ring_weight(rx, ry, rz, g)
                 dx, dy, dz = g[9] - x[0, i], g[10] - x[1, i], g[11] - x[2, i]
                 distance = max(math.sqrt(dx * dx + dy * dy + dz * dz), 1e-9)
                 dx, dy, dz = dx / distance, dy / distance, dz / distance
             else:
-                along = -(rx * g[3] + ry * g[4] + rz * g[5]) / g[6]
-                weight = longitudinal(along, g[7], g[8])
+                weight = sheet_weight(rx, ry, rz, g)
                 dx, dy, dz = g[3], g[4], g[5]
+            if weight == 0.0:
+                continue
             force[0, base + i] += share * weight * dx
             force[1, base + i] += share * weight * dy
             force[2, base + i] += share * weight * dz

@@ -16,9 +16,12 @@ import numpy as np
 from .arrays import FloatArray
 from .dynamics import Pull
 from .head import Head
+from .jaw import JawHinge
 from .muscle import (
     MIDLINE_BLEND_MM,
     RING_PEAK,
+    SHEET_TAPER,
+    SPHINCTER_REACH_MM,
     LidMuscle,
     LinearMuscle,
     Muscle,
@@ -30,7 +33,8 @@ from .tissue import TissueModel
 
 QUADRATURE = 4
 """Points along each side of a quad at which weights are integrated."""
-
+PACKED = 21
+"""Numbers that hold one muscle's geometry in the kernel of mode "current"."""
 
 LID_EDGE = (0.35, 0.6)
 """Radius, as a share of the orbital ellipse, over which the lids end and the cheek begins."""
@@ -134,7 +138,7 @@ def moving_pull(head: Head, tissue: TissueModel, muscles: Sequence[Muscle], *, r
     for muscle in muscles:
         if isinstance(muscle, LidMuscle):
             kinds.append(0)
-            shapes.append(np.zeros(16))
+            shapes.append(np.zeros(PACKED))
             scales.append(0.0)
             shares.append(np.zeros(n))
             continue
@@ -149,15 +153,68 @@ def moving_pull(head: Head, tissue: TissueModel, muscles: Sequence[Muscle], *, r
     return Pull(np.array(kinds, np.int32), np.array(shapes), np.array(scales), np.array(shares))
 
 
+def jaw_rides(head: Head, muscles: Sequence[Muscle]) -> FloatArray:
+    """Return the share of the jaw that each muscle's attachment and insertion turn by, (m, 2).
+
+    A linear muscle's ends ride as the skin nearest to them; a sphincter as the mean of the skin
+    that it rings; a sheet does not ride.
+    """
+    points, weight = head.points[: head.sheet_count], head.jaw_weight[: head.sheet_count]
+    rides = np.zeros((len(muscles), 2))
+    for row, muscle in enumerate(muscles):
+        if isinstance(muscle, LinearMuscle):
+            for column, end in enumerate((muscle.attachment, muscle.insertion)):
+                nearest = np.linalg.norm(points - np.array(end), axis=1).argmin()
+                rides[row, column] = weight[nearest]
+        elif isinstance(muscle, SphincterMuscle):
+            ringed = muscle.weights(points, profile="literal") > 0.0
+            rides[row] = weight[ringed].mean() if ringed.any() else 0.0
+    return rides
+
+
+def ride_jaw(
+    pull: Pull, rides: FloatArray, hinge: JawHinge, jaw: tuple[float, float, float]
+) -> Pull:
+    """Return the muscles of mode "current" with their ends carried along by the open jaw.
+
+    Left on the skull, a muscle of the mandible would pull the lowered lip back up to where its
+    attachment was. A muscle that lengthens keeps its δ.
+
+    Args:
+        pull: With the jaw closed.
+        rides: From `jaw_rides`, the same rows.
+        hinge: The rig's.
+        jaw: Pitch and yaw, degrees, thrust, mm.
+    """
+    shape = pull.shape.copy()
+    linear = (pull.kinds == 0) & (shape[:, 6] > 0.0)
+    g, share = shape[linear], rides[linear]
+    attachment = hinge.move(g[:, 0:3], share[:, 0], *jaw)
+    insertion = hinge.move(g[:, 0:3] + g[:, 3:6] * g[:, 6:7], share[:, 1], *jaw)
+    fibre = insertion - attachment
+    length = np.maximum(np.linalg.norm(fibre, axis=1, keepdims=True), 1e-9)
+    g[:, 0:3], g[:, 3:6], g[:, 6:7] = attachment, fibre / length, length
+    shape[linear] = g
+    ring = pull.kinds == 1
+    g, mean = shape[ring], rides[ring, 0]
+    for point in (slice(0, 3), slice(9, 12)):
+        g[:, point] = hinge.move(g[:, point], mean, *jaw)
+    for axis in (slice(3, 6), slice(6, 9), slice(16, 19)):
+        g[:, axis] = hinge.turn(g[:, axis], mean, *jaw[:2])
+    shape[ring] = g
+    return pull._replace(shape=shape)
+
+
 def packed_shape(muscle: Muscle, *, ring: str) -> FloatArray:
-    """Return a muscle's geometry as the kernel reads it, shape (16,).
+    """Return a muscle's geometry as the kernel reads it, shape (21,).
 
     Linear: attachment (0-2), unit fibre (3-5), length 6, angle 7 (radians), δ 8, η 9.
     Sphincter: plane point (0-2), e_x (3-5), e_y (6-8), epicentre (9-11), a 12, b 13,
-    literal 14, ring peak 15. Sheet: middle of the attachment line (0-2), pull (3-5), length 6,
-    δ 7, η 8.
+    literal 14, ring peak 15, normal (16-18), reach across the plane 19, hoop 20. Sheet: middle of
+    the attachment line (0-2), pull (3-5), length 6, δ 7, η 8, lateral unit (9-11), half of the
+    width W 12, tapered share 13, whether its inner side has no edge 14.
     """
-    g = np.zeros(16)
+    g = np.zeros(PACKED)
     if isinstance(muscle, LinearMuscle):
         attachment, insertion = np.array(muscle.attachment), np.array(muscle.insertion)
         length = math.dist(muscle.attachment, muscle.insertion)
@@ -170,12 +227,12 @@ def packed_shape(muscle: Muscle, *, ring: str) -> FloatArray:
         g[0:3], g[3:6], g[6:9] = muscle.plane, e_x, np.cross(normal, e_x)
         g[9:12] = muscle.center
         g[12:16] = muscle.semi_major, muscle.semi_minor, float(ring == "literal"), RING_PEAK
+        g[16:19], g[19:21] = normal, (SPHINCTER_REACH_MM, muscle.hoop)
     elif isinstance(muscle, SheetMuscle):
-        attachment_middle = np.mean(muscle.attachment, axis=0)
-        pull = attachment_middle - np.mean(muscle.insertion, axis=0)
-        length = math.sqrt(pull @ pull)
-        g[0:3], g[3:6] = attachment_middle, pull / length
+        middle, pull, length, line, width = muscle.frame()
+        g[0:3], g[3:6], g[9:12] = middle, pull, line
         g[6:9] = length, muscle.radius / length, muscle.strength
+        g[12:15] = width / 2.0, SHEET_TAPER, float(muscle.open_inwards)
     return g
 
 

@@ -161,7 +161,9 @@ class SphincterMuscle:
         a, b = self.semi_major, self.semi_minor
         safe = np.maximum(radius, 1e-9)
         cos_t, sin_t = across / a / safe, up / b / safe
-        curvature = (b * b / (a * a * sin_t**2 + b * b * cos_t**2)) ** 1.5
+        # In the very middle no angle is defined, and the bend is taken as on the tighter axis.
+        bend = np.maximum(a * a * sin_t**2 + b * b * cos_t**2, min(a, b) ** 2)
+        curvature = (b * b / bend) ** 1.5
         return np.asarray((1.0 - self.hoop) + self.hoop * curvature)
 
 
@@ -196,26 +198,33 @@ class SheetMuscle:
 
     def weights(self, points: FloatArray) -> FloatArray:
         """Return Θ(λ), tapered to the sides, at skin `points`, shape (k, 3), mm → shape (k,)."""
-        middle, pull, length, line, width = self._frame()
+        middle, pull, length, line, width = self.frame()
         offset = points - middle
         along = -(offset @ pull) / length  # Eq. 16: distance from the attachment line
         reach = self.radius / length  # Eq. 17
         weight = longitudinal_profile(along, reach, self.strength)  # Eq. 15
         across = offset @ line
         lateral = np.abs(across) / (width / 2.0)
-        if abs(self.attachment[0][0]) < 1.0:
-            # A sheet that starts at the midline meets its twin there and has no edge to fade at.
-            inner = across * math.copysign(1.0, line[0]) < 0.0
-            lateral = np.where(inner, np.minimum(lateral, 1.0 - SHEET_TAPER), lateral)
+        if self.open_inwards:
+            lateral = np.where(across < 0.0, 0.0, lateral)
         fade = np.clip((lateral - (1.0 - SHEET_TAPER)) / (2.0 * SHEET_TAPER), 0.0, 1.0)
         return np.asarray(weight * np.cos(fade * math.pi / 2.0) ** 2)
 
     def directions(self, points: FloatArray) -> FloatArray:
         """Return the sheet's one direction of pull (Eq. 14) for each of `points`, shape (k, 3)."""
-        _, pull, _, _, _ = self._frame()
+        _, pull, _, _, _ = self.frame()
         return np.tile(pull, (len(points), 1))
 
-    def _frame(self) -> tuple[FloatArray, FloatArray, float, FloatArray, float]:
+    @property
+    def open_inwards(self) -> bool:
+        """Whether it starts at the midline, meets its twin there, and has no edge to fade at."""
+        return abs(self.attachment[0][0]) < 1.0
+
+    def frame(self) -> tuple[FloatArray, FloatArray, float, FloatArray, float]:
+        """Return m_Ac, the unit n of Eq. 14, |m_Ac - m_Ic|, the unit across the fibres, W.
+
+        The unit across runs from the first end of the attachment line to the second.
+        """
         a1, a2 = np.array(self.attachment[0]), np.array(self.attachment[1])
         i1, i2 = np.array(self.insertion[0]), np.array(self.insertion[1])
         middle = (a1 + a2) / 2.0

@@ -12,6 +12,7 @@ from .arrays import FloatArray
 from .assembly import Assembly, compile_rig
 from .dynamics import Pull, Skull, Workspace, add_basis_forces, advance, workspace
 from .errors import InvalidValue, UnknownName
+from .force_basis import ride_jaw
 from .frame import Frame, Pose
 from .mixing import Mixer
 from .rig import Model, Rig
@@ -226,17 +227,29 @@ class Simulator:
         assembly, m = self.assembly, self.rig.channels.muscle_count
         activations = state.signals[:m]
         if self.model.forces == "current":
-            active = activations != 0.0
-            pull = assembly.pull
-            return state.skull, Pull(
-                pull.kinds[active],
-                pull.shape[active],
-                pull.scale[active] * activations[active],
-                pull.share[active],
-            )
+            return state.skull, self._moving_pull(activations, state.signals[m : m + 3])
         load = state.skull.load.copy()
         add_basis_forces(assembly.basis, activations, load)
         return state.skull._replace(load=load), assembly.pull
+
+    def _moving_pull(self, activations: FloatArray, jaw: FloatArray) -> Pull:
+        """Return the active muscles for mode "current", their ends where the jaw has carried them.
+
+        Args:
+            activations: Shape (m,).
+            jaw: Pitch and yaw, degrees, thrust, mm, shape (3,).
+        """
+        active, pull = activations != 0.0, self.assembly.pull
+        moving = Pull(
+            pull.kinds[active],
+            pull.shape[active],
+            pull.scale[active] * activations[active],
+            pull.share[active],
+        )
+        if not jaw.any():
+            return moving
+        pitch, yaw, thrust = (float(value) for value in jaw)
+        return ride_jaw(moving, self.assembly.rides[active], self.rig.jaw, (pitch, yaw, thrust))
 
     def _judge(self, state: FaceState) -> None:
         """Catch a face that diverged, and let one that rests fall asleep."""

@@ -107,7 +107,7 @@ def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool)
 
 def no_pull(node_count: int) -> Pull:
     """Return the empty set of moving muscles, for mode "rest"."""
-    return Pull(np.zeros(0, np.int32), np.zeros((0, 16)), np.zeros(0), np.zeros((0, node_count)))
+    return Pull(np.zeros(0, np.int32), np.zeros((0, 21)), np.zeros(0), np.zeros((0, node_count)))
 
 
 def rest_skull(arrays: Tissue, layers: Layers, load: FloatArray) -> Skull:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import InvalidValue
-from engine.dynamics import add_muscle_forces
-from engine.force_basis import packed_shape
+from engine.dynamics import Pull, add_muscle_forces
+from engine.force_basis import jaw_rides, moving_pull, packed_shape, ride_jaw
 from engine.muscle import (
     RING_PEAK,
+    LidMuscle,
     LinearMuscle,
     SheetMuscle,
     SphincterMuscle,
@@ -23,6 +25,7 @@ from engine.muscle import (
     mirrored,
     ring_profile,
 )
+from engine.tissue import assemble
 
 LINEAR = LinearMuscle("m.L", (0.0, 0.0, 0.0), (10.0, 0.0, 0.0), 15.0, 30.0, 1.5, 100.0)
 SHEET = SheetMuscle(
@@ -130,29 +133,86 @@ def test_a_mirrored_muscle_mirrors_its_force(points):
         assert twin.weights(here * flip) == pytest.approx(muscle.weights(here), abs=1e-12)
 
 
-@given(st.lists(st.tuples(*[st.floats(-25, 25)] * 3), min_size=4, max_size=30))
+HOOP = replace(RING, hoop=0.8)
+CENTRAL = SheetMuscle(
+    "c.L",
+    ((0.0, 20.0, 0.0), (20.0, 20.0, 0.0)),
+    ((0.0, 10.0, 0.0), (20.0, 10.0, 0.0)),
+    15.0,
+    2.0,
+    1.0,
+)
+"""A sheet that starts at the midline."""
+
+
+@settings(deadline=None)
+@given(st.lists(st.tuples(*[st.floats(-40, 40)] * 3), min_size=4, max_size=30))
 def test_the_moving_kernel_agrees_with_the_muscles(points):
     here = np.array(points)
     n = len(here)
-    from engine.dynamics import Pull
-
-    for kind, muscle in enumerate((LINEAR, RING, SHEET)):
-        if kind == 2:
-            # The kernel leaves the lateral fade of a sheet to the shares: stay inside it.
-            here = here * np.array([0.05, 1.0, 1.0]) + np.array([15.0, 0.0, 0.0])
+    kinds = {"linear": 0, "sphincter": 1, "sheet": 2}
+    for muscle in (LINEAR, RING, HOOP, SHEET, mirrored(SHEET), CENTRAL, mirrored(CENTRAL)):
         force = np.zeros((3, 3 * n))
         pull = Pull(
-            np.array([kind], np.int32),
+            np.array([kinds[muscle.kind]], np.int32),
             packed_shape(muscle, ring="ring")[None],
             np.array([2.0]),
             np.ones((1, n)),
         )
         x = np.ascontiguousarray(np.tile(here, (3, 1)).T)
         add_muscle_forces(x, pull, force)
-        near = np.abs(here[:, 2]) < 29.0
         expected = 2.0 * muscle.weights(here)[:, None] * muscle.directions(here)
-        assert force[:, 2 * n :].T[near] == pytest.approx(expected[near], abs=1e-7)
+        assert force[:, 2 * n :].T == pytest.approx(expected, abs=1e-7)
         assert not force[:, : 2 * n].any()
+
+
+def test_a_sheet_that_starts_at_the_midline_fades_at_its_outer_edge_only():
+    lateral = np.array([[x, 10.0, 0.0] for x in (0.0, 10.0, 17.0, 24.0, 27.1, 60.0)])
+    weights = CENTRAL.weights(lateral)
+    assert weights[:2] == pytest.approx([1.0, 1.0])
+    assert weights[2] > weights[3] > 0.0
+    assert weights[4:] == pytest.approx([0.0, 0.0])
+    assert mirrored(CENTRAL).weights(lateral * [-1, 1, 1]) == pytest.approx(weights)
+
+
+@pytest.mark.parametrize("name", ["standard_rig", "paper_rig"])
+def test_the_moving_muscles_start_as_strong_as_the_resting_ones_say(name, request):
+    rig = request.getfixturevalue(name)
+    tissue = assemble(rig.head, rig.parameters, literal_springs=False)
+    n, sheet = tissue.node_count, tissue.sheet
+    pull = moving_pull(rig.head, tissue, rig.muscles, ring=rig.model.sphincter)
+    for row, muscle in enumerate(rig.muscles):
+        if isinstance(muscle, LidMuscle):
+            continue
+        one = Pull(*(part[row : row + 1] for part in pull))
+        force = np.zeros_like(tissue.arrays.rest)
+        add_muscle_forces(tissue.arrays.rest, one, force)
+        profile = {"profile": rig.model.sphincter} if muscle.kind == "sphincter" else {}
+        weight = muscle.weights(sheet.points, **profile) * pull.share[row] * pull.scale[row]
+        expected = weight[:, None] * muscle.directions(sheet.points)
+        rim = np.zeros(n, bool)
+        if muscle.kind == "sphincter":
+            rim = np.abs(muscle.radius_at(sheet.points) - 1.0) < 1e-9
+        assert force[:, 2 * n :].T[~rim] == pytest.approx(expected[~rim], abs=1e-6)
+
+
+def test_the_open_jaw_carries_its_muscles_along(paper_rig):
+    tissue = assemble(paper_rig.head, paper_rig.parameters, literal_springs=True)
+    pull = moving_pull(paper_rig.head, tissue, paper_rig.muscles, ring="literal")
+    rides = jaw_rides(paper_rig.head, paper_rig.muscles)
+    opened = ride_jaw(pull, rides, paper_rig.jaw, (20.0, 0.0, 0.0))
+    for row, muscle in enumerate(paper_rig.muscles):
+        before, after = pull.shape[row], opened.shape[row]
+        moved = np.linalg.norm(after[:3] - before[:3])
+        stem = muscle.name.partition(".")[0]
+        if stem in ("mentalis", "depressor_labii_inferioris"):
+            assert moved > 30.0
+            assert after[6] == pytest.approx(before[6], rel=0.02)
+        if stem in ("zygomatic_major", "levator_labii_superioris", "frontalis_medial"):
+            assert moved == 0.0
+        if stem == "orbicularis_oris":
+            assert 10.0 < moved < 30.0
+    assert ride_jaw(pull, rides, paper_rig.jaw, (0.0, 0.0, 0.0)).shape == pytest.approx(pull.shape)
 
 
 def test_nonsense_geometry_is_refused_with_what_was_given():
