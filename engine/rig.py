@@ -17,7 +17,7 @@ from .errors import EngineError, InvalidValue, UnknownName
 from .facs import ActionUnit, parse_facs, split_side
 from .head import Head, paper_head, standard_head
 from .jaw import JawHinge
-from .muscle import LidMuscle, Muscle, mirrored
+from .muscle import LidMuscle, Muscle, SphincterMuscle, mirrored
 from .rig_data import load_action_units, load_emotions, load_muscles
 from .timeline import LAYERS, Keyframe
 from .tissue import PAPER_PARAMETERS, TissueParameters
@@ -27,6 +27,16 @@ MAX_ACTIVATION = 1.5
 """Greatest activation of a muscle, after sums: beyond it the springs leave their measured range."""
 PAPER_FORCE_SHARE = 0.42
 """Force scales of the `paper` rig against the standard's: its tissue has no pre-tension to move."""
+PAPER_FORCE_SHARES: Mapping[str, float] = {
+    "frontalis_lateral": 0.53,
+    "levator_labii_alaeque_nasi": 0.56,
+    "levator_labii_superioris": 0.36,
+    "depressor_anguli_oris": 0.52,
+    "depressor_labii_inferioris": 0.19,
+    "mentalis": 0.50,
+    "orbicularis_oris": 0.44,
+}
+"""The same where 0.42 leaves a landmark of Table 1 outside its human range; by muscle, no side."""
 EDITABLE = (
     "attachment",
     "insertion",
@@ -360,8 +370,8 @@ def builtin_rig(name: str) -> Rig:
         return rig_from_head(head, parameters=TissueParameters())
     if name == "paper":
         rig = rig_from_head(paper_head(), parameters=PAPER_PARAMETERS)
-        weaker = tuple(_scaled(muscle, PAPER_FORCE_SHARE) for muscle in rig.muscles)
-        return replace(rig, muscles=weaker, model=PAPER_MODEL)
+        literal = tuple(_as_in_the_paper(muscle) for muscle in rig.muscles)
+        return replace(rig, muscles=literal, model=PAPER_MODEL)
     raise UnknownName("rig", name, BUILTIN_RIGS)
 
 
@@ -383,10 +393,13 @@ def rig_from_head(head: Head, *, parameters: TissueParameters) -> Rig:
     )
 
 
-def _scaled(muscle: Muscle, share: float) -> Muscle:
+def _as_in_the_paper(muscle: Muscle) -> Muscle:
+    """Return `muscle` at the paper rig's force, and a sphincter as plain as Eq. 11."""
     if isinstance(muscle, LidMuscle):
         return muscle
-    return replace(muscle, force_scale=muscle.force_scale * share)
+    share = PAPER_FORCE_SHARES.get(muscle.name.partition(".")[0], PAPER_FORCE_SHARE)
+    weaker = replace(muscle, force_scale=muscle.force_scale * share)
+    return replace(weaker, hoop=0.0) if isinstance(weaker, SphincterMuscle) else weaker
 
 
 def _edited_muscle(muscle: Muscle, changes: Mapping[str, object]) -> Muscle:
