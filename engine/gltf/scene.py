@@ -112,6 +112,8 @@ def part_attributes(part: Part, *, origin: FloatArray | float = 0.0) -> dict[str
     }
     if part.material != "cornea":  # it is clear: its colour is the material's
         attributes["COLOR_0"] = part.colors.clip(0, 1).astype(np.float32)
+    if part.hair is not None:
+        attributes["_HAIR"] = part.hair.astype(np.float32)
     return attributes
 
 

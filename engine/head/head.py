@@ -37,6 +37,7 @@ class Part:
         material: "skin", "eye", "cornea", "wet", "teeth" or "hair".
         follows: What it moves with: "skull", "jaw", "eye.L", "eye.R" or "skin".
         roots: Drawn vertex that each vertex rides, shape (v,); only when it follows the skin.
+        hair: Cropped-hair mask in 0..1, shape (v,); only where a part is skin that hair grows on.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Part:
     material: str
     follows: str
     roots: IntArray | None = None
+    hair: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -137,6 +137,7 @@ def _skullcap(sculpture: Sculpture, tissue: TissueSurface) -> list[Part]:
         colors=whole.colors[used],
         material="skin",
         follows="skull",
+        hair=whole.hair[used],
     )
     still = replace(whole, map=sp.csr_array((len(whole.vertices), len(tissue.cage_points))))
     return [back, *hair_parts(still)]
