@@ -16,8 +16,8 @@ OUTLINE = np.array([
     (-42, -58), (-50, -80), (-75, -88), (-120, -88), (-120, 140), (110, 140),
 ], dtype=float)  # fmt: skip
 EAR_CENTER = np.array([-14.0, -6.0])
-EAR_RADII = np.array([13.0, 17.0])
-FADE = (-4.0, 7.0)
+EAR_RADII = np.array([8.0, 12.0])
+FADE = (-7.0, 11.0)
 """Distance inside the outline [mm] over which hair grows from none to full."""
 
 

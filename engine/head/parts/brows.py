@@ -8,8 +8,8 @@ from ...arrays import FloatArray
 from ..head import DrawnSurface, Part
 from .strands import FrontView, Strands, strand_part
 
-HAIRS = 500
-POINTS = 4
+HAIRS = 560
+POINTS = 3
 WIDTH = 0.165
 
 # The brow's middle line in the front view and its width, by share of the way outwards.
