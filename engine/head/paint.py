@@ -35,9 +35,9 @@ LID_INSIDE = (0.64, 0.28, 0.25)
 UPPER_LIP = (0.635, 0.345, 0.305)
 LOWER_LIP = (0.70, 0.41, 0.36)
 LIP_INSIDE = (0.50, 0.18, 0.17)
-MOUTH = (0.32, 0.09, 0.09)
+MOUTH = (0.43, 0.14, 0.13)
 NOSTRIL = (0.25, 0.09, 0.075)
-SCALP_HAIR = (0.155, 0.115, 0.09)
+SCALP_HAIR = (0.175, 0.135, 0.11)
 BROW_SHADE = (0.25, 0.16, 0.115)
 
 
@@ -65,7 +65,8 @@ def painted(cage: Cage, limit: Limit, vertices: FloatArray) -> Paint:
     canvas.blend(NOSTRIL, 0.95 * canvas.region("nostril", blur=1))
     canvas.blend(BROW_SHADE, 0.42 * _brow_mask(canvas))
     hair = hair_mask(vertices)
-    canvas.blend(SCALP_HAIR, 0.92 * hair)
+    # Where hair is thin the skin shows between it; the viewer draws the single hairs there.
+    canvas.blend(SCALP_HAIR, 0.9 * hair**3)
     _paint_unevenness(canvas)
     _paint_shade(canvas)
     return Paint(linear_rgb(canvas.colors), hair)
@@ -116,14 +117,14 @@ class Canvas:
 
 def _paint_complexion(canvas: Canvas) -> None:
     blush = 1 + 0.35 * noise(canvas.vertices, 7.0, 3)
-    canvas.blend(RED, 0.24 * canvas.spot(42, -38, 22, 19) * blush)
+    canvas.blend(RED, 0.17 * canvas.spot(42, -38, 22, 19) * blush)
     canvas.blend(RED, 0.34 * canvas.spot(0, -42, 15, 9) * smoothstep(85, 100, canvas.z))
     canvas.blend(RED, 0.20 * canvas.region("ala", blur=3))
     canvas.blend(RED, 0.20 * canvas.spot(0, -103, 16, 10) * blush)
     canvas.blend(SALLOW, 0.25 * canvas.spot(0, 55, 45, 30))
     canvas.blend(BROWNISH, 0.34 * canvas.spot(31, -11, 17, 5))
-    canvas.blend((0.55, 0.37, 0.36), 0.22 * canvas.spot(18, -10, 7, 6))
-    canvas.blend(BROWNISH, 0.36 * canvas.spot(31, 9, 18, 6))
+    canvas.blend((0.55, 0.37, 0.36), 0.12 * canvas.spot(18, -10, 7, 6))
+    canvas.blend(BROWNISH, 0.28 * canvas.spot(31, 9, 18, 6))
     jowl = smoothstep(-78, -106, canvas.y) * smoothstep(10, 40, canvas.z)
     moustache = 0.7 * canvas.region("perioral_upper", "philtrum", blur=4)
     stubble = np.maximum(jowl * (1 - smoothstep(-122, -140, canvas.y)), moustache)
@@ -140,14 +141,14 @@ def _paint_lids(canvas: Canvas) -> None:
 
 
 def _paint_lips(canvas: Canvas) -> None:
-    lip = canvas.region("upper_lip", "lower_lip")
+    lip = canvas.region("upper_lip", "lower_lip", blur=1)  # its border is soft
     is_upper = smoothstep(-72.2, -71.0, canvas.y)[:, None]
     tone = np.array(UPPER_LIP) * is_upper + np.array(LOWER_LIP) * (1 - is_upper)
     # Lips are darker towards the corners and finely streaked upwards.
     streak = noise(canvas.vertices * [1.0, 0.28, 0.28], 1.5, 12)
     tone = tone * (1 + 0.045 * streak[:, None])
     tone = tone * (1 - 0.12 * smoothstep(14, 25, canvas.x))[:, None]
-    canvas.blend(tone, 0.78 * lip)
+    canvas.blend(tone, 0.82 * lip)
     canvas.blend(LIP_INSIDE, 0.9 * canvas.region("upper_lip_inner", "lower_lip_inner", blur=1))
 
 

@@ -24,6 +24,7 @@ IRIS_RECESS = 1.15
 """How far the rim of the iris lies behind the plane of the limbus, mm."""
 PUPIL_RECESS = 0.5
 LIMBUS_ANGLE = float(np.arcsin(IRIS_RADIUS / EYE_RADIUS))
+CAUSTIC_ANGLE = float(np.radians(-55))
 CORNEA_RADIUS = 6.3
 CORNEA_BULGE_RADIUS = 6.2
 BACK_ANGLE = 2.2
@@ -31,13 +32,13 @@ BACK_ANGLE = 2.2
 
 # Linear RGB.
 PUPIL = np.array([0.004, 0.004, 0.004])
-IRIS_INNER = np.array([0.235, 0.125, 0.05])
+IRIS_INNER = np.array([0.27, 0.14, 0.052])
 IRIS_OUTER = np.array([0.075, 0.062, 0.045])
 LIMBUS = np.array([0.05, 0.04, 0.035])
-SCLERA = np.array([0.62, 0.555, 0.51])
+SCLERA = np.array([0.66, 0.565, 0.50])
 SCLERA_PINK = np.array([0.46, 0.25, 0.21])
 CARUNCLE = np.array([0.50, 0.20, 0.17])
-CORNER_FILLER = np.array([0.50, 0.33, 0.29])
+CORNER_FILLER = np.array([0.40, 0.235, 0.20])
 
 
 def eye_parts() -> list[Part]:
@@ -129,7 +130,10 @@ def _iris_colors(disc: FloatArray, around: FloatArray) -> FloatArray:
     light = fibre * (1 + 0.35 * frill)
     light = light * (1 - 0.75 * smoothstep(0.84, 1.0, share))
     light = light * (0.55 + 0.45 * smoothstep(0.34, 0.42, share))
-    light = light * (1 - 0.35 * np.maximum(np.sin(around), 0))  # the upper lid's shade
+    light = light * (1 - 0.5 * np.maximum(np.sin(around), 0) * smoothstep(0.3, 1, share))  # the lid
+    # The cornea gathers light on the side away from the key light.
+    caustic = np.maximum(np.cos(around - CAUSTIC_ANGLE), 0) ** 2 * smoothstep(0.3, 0.6, share)
+    light = light * (1 + 0.9 * caustic)
     colors = base * light[..., None]
     return np.asarray(np.where((disc <= PUPIL_RADIUS)[:, None, None], PUPIL, np.clip(colors, 0, 1)))
 
@@ -137,11 +141,11 @@ def _iris_colors(disc: FloatArray, around: FloatArray) -> FloatArray:
 def _sclera_colors(polar: FloatArray, around: FloatArray) -> FloatArray:
     """Return colours (r, SEGMENTS, 3): dark limbus, off-white, pink to the sides and back."""
     from_limbus = smoothstep(LIMBUS_ANGLE - 0.02, LIMBUS_ANGLE + 0.085, polar)[:, None, None]
-    to_back = smoothstep(0.72, 1.25, polar)[:, None, None]
+    to_back = smoothstep(0.62, 1.15, polar)[:, None, None]
     colors = LIMBUS * (1 - from_limbus) + SCLERA * from_limbus
     colors = colors * (1 - to_back) + SCLERA_PINK * to_back
     height = EYE_RADIUS * np.sin(polar)[:, None] * np.sin(around)
-    shade = (1 - 0.45 * smoothstep(1.5, 5.5, height)) * (1 - 0.16 * smoothstep(-3, -5.5, height))
+    shade = (1 - 0.62 * smoothstep(0.5, 5.2, height)) * (1 - 0.16 * smoothstep(-3, -5.5, height))
     return np.asarray(np.broadcast_to(colors, (*height.shape, 3)) * shade[..., None])
 
 

@@ -93,10 +93,10 @@ CROWN_PROFILE = (
 )
 
 # Linear RGB.
-ENAMEL = np.array([0.80, 0.69, 0.53])
+ENAMEL = np.array([0.82, 0.71, 0.56])
 ENAMEL_NECK = np.array([0.68, 0.51, 0.32])
 ENAMEL_EDGE = np.array([0.74, 0.69, 0.60])
-FLESH_TINT = np.array([1.0, 1.25, 1.4])
+FLESH_TINT = np.array([0.7, 1.2, 1.3])
 GUM = np.array([0.46, 0.165, 0.155])
 GUM_MARGIN = np.array([0.56, 0.25, 0.225])
 

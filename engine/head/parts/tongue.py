@@ -13,8 +13,8 @@ CENTER = np.array([0.0, -80.0, 57.0])
 RADII = np.array([18.5, 6.5, 30.0])
 GROOVE_DEPTH = 1.8
 GROOVE_WIDTH = 2.6
-TIP = np.array([0.50, 0.19, 0.18])
-BACK = np.array([0.46, 0.22, 0.20])
+TIP = np.array([0.60, 0.23, 0.21])
+BACK = np.array([0.55, 0.25, 0.22])
 
 
 def tongue_part() -> Part:
