@@ -20,6 +20,7 @@ import type { GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { createMaterial } from './materials';
 import { MovingNormals } from './normals';
+import { strandSides } from './strand-sides';
 import { Strands } from './strands';
 import type { Eyeball } from './surface';
 import { DrawnSurface } from './surface';
@@ -67,10 +68,12 @@ const DEFAULT_GRID = 2e-5;
 const MOUTH_TOP = -0.04;
 const LIPS = 0.094;
 const THROAT = 0.045;
-const DARKEST = { wet: 0.2, teeth: 0.5 };
+const DARKEST = { wet: 0.4, teeth: 0.6 };
 /** A face that reaches lower than this [m] has a neck, which fades over so many mm. */
 const NECK_BELOW = -0.14;
 const NECK_FADE = 58;
+/** What is blended comes after what is opaque: skin, which fades at the neck, then corneas, then hair over both. */
+const DRAWN_AFTER: Record<string, number> = { skin: 1, cornea: 2, hair: 3 };
 const RADIANS = Math.PI / 180;
 
 export class Face {
@@ -303,12 +306,20 @@ function dress(root: Object3D): void {
     mesh.castShadow = kind !== 'cornea';
     mesh.receiveShadow = kind !== 'cornea';
     mesh.frustumCulled = false;
-    // Skin is blended at the neck, so it must come after what is opaque and before the corneas.
-    mesh.renderOrder = kind === 'cornea' ? 2 : kind === 'skin' ? 1 : 0;
+    mesh.renderOrder = DRAWN_AFTER[kind] ?? 0;
+    if (kind === 'hair') addStrandSides(mesh);
     if (kind === 'skin') {
       mesh.geometry.setAttribute('restPosition', mesh.geometry.getAttribute('position').clone());
     }
   }
+}
+
+function addStrandSides({ geometry }: Mesh<BufferGeometry>): void {
+  const index = geometry.getIndex();
+  if (index === null) throw new Error('Strands of hair have no triangles.');
+  const positions = plainArray(geometry.getAttribute('position'));
+  const sides = strandSides(positions, plainArray(index));
+  geometry.setAttribute('strandSide', new Float32BufferAttribute(sides, 4));
 }
 
 function isInMouth(mesh: Mesh<BufferGeometry>): boolean {

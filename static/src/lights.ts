@@ -23,9 +23,9 @@ export function createLights(): Group {
   const key = new DirectionalLight(0xfff3e6, 2.5);
   key.position.set(-0.22, 0.24, 0.36);
   castSoftShadow(key);
-  const fill = new DirectionalLight(0xcad8ff, 0.55);
+  const fill = new DirectionalLight(0xe2e6f5, 0.6);
   fill.position.set(0.36, 0.04, 0.24);
-  const rimLeft = new DirectionalLight(0xdfe8ff, 1.5);
+  const rimLeft = new DirectionalLight(0xdfe8ff, 1.2);
   rimLeft.position.set(0.3, 0.2, -0.26);
   const rimRight = new DirectionalLight(0xffe2c4, 0.7);
   rimRight.position.set(-0.34, 0.12, -0.22);
@@ -35,7 +35,7 @@ export function createLights(): Group {
     fill,
     rimLeft,
     rimRight,
-    new HemisphereLight(0xdfe8ff, 0x6b4436, 0.45),
+    new HemisphereLight(0xeceef4, 0x6e5244, 0.5),
   );
   return lights;
 }

@@ -1,6 +1,6 @@
 // How each kind of surface takes light: skin, eyes, wet mucosa, teeth, hair.
 
-import type { Material } from 'three';
+import type { Material, MeshPhysicalMaterialParameters } from 'three';
 import {
   AdditiveBlending,
   Color,
@@ -9,7 +9,9 @@ import {
   MeshStandardMaterial,
   Vector2,
 } from 'three';
+import { makeHair } from './hair-shader';
 import { makeSkin } from './skin-shader';
+import { softenShadows } from './soft-shadows';
 
 /** Where a surface lies, as far as it matters to its light. */
 export interface Setting {
@@ -30,7 +32,7 @@ export function createMaterial(
   const envMapIntensity = inMouth ? 0.25 : 1;
   switch (kind) {
     case 'eye':
-      return new MeshPhysicalMaterial({
+      return withSoftShadows({
         vertexColors,
         roughness: 0.22,
         specularIntensity: 0.5,
@@ -40,31 +42,32 @@ export function createMaterial(
     case 'cornea':
       return cornea();
     case 'wet':
-      return new MeshPhysicalMaterial({
+      return withSoftShadows({
         vertexColors,
-        roughness: 0.32,
-        specularIntensity: 0.6,
-        clearcoat: 0.3,
+        roughness: inMouth ? 0.45 : 0.32,
+        specularIntensity: inMouth ? 0.25 : 0.6,
+        clearcoat: inMouth ? 0 : 0.3,
         clearcoatRoughness: 0.25,
         envMapIntensity,
       });
     case 'teeth':
-      return new MeshPhysicalMaterial({
+      return withSoftShadows({
         vertexColors,
-        roughness: 0.38,
-        specularIntensity: 0.45,
+        roughness: 0.34,
+        specularIntensity: inMouth ? 0.35 : 0.45,
         envMapIntensity,
       });
     case 'hair':
-      return new MeshStandardMaterial({
-        vertexColors,
-        color: vertexColors ? 0xffffff : 0x2a1a12,
-        roughness: 0.75,
-        side: DoubleSide,
-      });
+      return hair(vertexColors);
     default:
       return skin(vertexColors, neckFade);
   }
+}
+
+function withSoftShadows(look: MeshPhysicalMaterialParameters): Material {
+  const material = new MeshPhysicalMaterial(look);
+  material.onBeforeCompile = softenShadows;
+  return material;
 }
 
 function skin(vertexColors: boolean, fade: Setting['neckFade']): Material {
@@ -81,6 +84,27 @@ function skin(vertexColors: boolean, fade: Setting['neckFade']): Material {
   const neckFade = { value: new Vector2(...(fade ?? NO_FADE)) };
   material.onBeforeCompile = (program) => {
     makeSkin(program, neckFade);
+  };
+  return material;
+}
+
+/** Strands are blended, so that those thinner than a pixel fade instead of breaking into dots. */
+function hair(vertexColors: boolean): Material {
+  const material = new MeshStandardMaterial({
+    vertexColors,
+    color: vertexColors ? 0xffffff : 0x2a1a12,
+    roughness: 0.7,
+    side: DoubleSide,
+    transparent: true,
+    depthWrite: false,
+  });
+  const drawnHeight = { value: 0 };
+  const size = new Vector2();
+  material.onBeforeRender = (renderer) => {
+    drawnHeight.value = renderer.getDrawingBufferSize(size).y;
+  };
+  material.onBeforeCompile = (program) => {
+    makeHair(program, drawnHeight);
   };
   return material;
 }
