@@ -44,6 +44,8 @@ function castSoftShadow(light: DirectionalLight): void {
   light.castShadow = true;
   light.shadow.mapSize.set(SHADOW_MAP_SIZE, SHADOW_MAP_SIZE);
   light.shadow.radius = 9;
+  // Some of the key's light comes back from the room, also where it does not reach.
+  light.shadow.intensity = 0.82;
   light.shadow.bias = -0.0004;
   light.shadow.normalBias = 0.0011;
   const camera = light.shadow.camera;

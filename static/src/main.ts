@@ -135,7 +135,9 @@ async function showFace(address: string): Promise<void> {
   viewer.surfaceReady = true;
   // The frame that came while loading is still waiting, and is drawn now.
   await scene.rendered();
-  element('curtain').classList.add('open');
+  const curtain = element('curtain').classList;
+  if (!page.bare && !curtain.contains('open')) scene.enter();
+  curtain.add('open');
 }
 
 async function showRig(id: string, isNew: boolean): Promise<void> {
@@ -214,12 +216,12 @@ const actions: Actions = {
   },
   setView(view) {
     viewer.view = view;
-    scene.setView(view);
+    scene.glideTo(view);
   },
   reset() {
     commands.reset();
     viewer.say('');
-    scene.setView(viewer.view);
+    scene.glideTo(viewer.view);
   },
   reconnect: () => {
     connection.connect();
@@ -265,6 +267,13 @@ function shownFace(): Face {
 }
 
 if (!page.bare) {
+  element('face').addEventListener(
+    'pointerdown',
+    () => {
+      element('drag').remove();
+    },
+    { once: true },
+  );
   mount(StatusBar, { target: element('bar'), props: { viewer, actions } });
   mount(Panels, {
     target: element('panels'),

@@ -16,6 +16,11 @@ import { createBackdrop, createEnvironment, createLights } from './lights';
 const LEAST_PIXEL_RATIO = 1.5;
 /** Share of the camera's way around the face that the lights go with it. */
 const LIGHTS_FOLLOW = 0.8;
+/** Degrees and time of the camera's way to its first view. */
+const ENTER_FROM = 38;
+const ENTER_MS = 1800;
+/** How long the camera takes from one view to another [ms]. */
+const GLIDE_MS = 900;
 /** Height of the bar over the stage, whose half the head makes room for [CSS px]. */
 const BAR_HEIGHT = 40;
 
@@ -47,6 +52,9 @@ export class Scene {
   private readonly observer: ResizeObserver;
   private readonly lights = createLights();
   private view: string;
+  /** Degrees aside at which the camera stands, on its way to its view. */
+  private angle: number;
+  private glide: { from: number; to: number; start: number; duration: number } | null = null;
   /** The camera stands where a view put it, so that resizing may frame it anew. */
   private framed = true;
   private scheduled = false;
@@ -58,6 +66,7 @@ export class Scene {
     private readonly options: SceneOptions,
   ) {
     this.view = options.view;
+    this.angle = VIEW_ANGLES[this.view]!;
     this.renderer = new WebGLRenderer({
       canvas,
       antialias: true,
@@ -96,8 +105,23 @@ export class Scene {
       );
     }
     this.view = name;
+    this.angle = VIEW_ANGLES[name]!;
+    this.glide = null;
     this.frame();
     this.invalidate();
+  }
+
+  /** Go round to a view, as someone would who walks about the head; at once for who wants no motion. */
+  glideTo(name: string, from = this.standing(), duration = GLIDE_MS): void {
+    this.setView(name);
+    if (window.matchMedia('(prefers-reduced-motion: reduce)').matches) return;
+    this.glide = { from, to: this.angle, start: performance.now(), duration };
+    this.stepGlide(performance.now());
+  }
+
+  /** Show that the head is one to walk around: come from the side. */
+  enter(): void {
+    this.glideTo(this.view, this.angle + ENTER_FROM, ENTER_MS);
   }
 
   /** Something that is drawn has changed: draw with the next animation frame. */
@@ -112,6 +136,7 @@ export class Scene {
     this.scheduled = true;
     requestAnimationFrame(() => {
       this.scheduled = false;
+      this.stepGlide(performance.now());
       const updated = this.options.update();
       if (updated || this.changed) this.draw();
     });
@@ -123,6 +148,22 @@ export class Scene {
       this.waiting.push(resolve);
       this.invalidate();
     });
+  }
+
+  /** Degrees aside at which the camera stands now, also where the visitor has turned it. */
+  private standing(): number {
+    const { x, z } = this.camera.position.clone().sub(TARGET);
+    return (Math.atan2(x, z) * 180) / Math.PI;
+  }
+
+  private stepGlide(now: number): void {
+    if (this.glide === null) return;
+    const { from, to, start, duration } = this.glide;
+    const share = Math.min(1, Math.max(0, (now - start) / duration));
+    this.angle = to + (from - to) * (1 - share) ** 3;
+    if (share === 1) this.glide = null;
+    this.frame();
+    this.invalidate();
   }
 
   private draw(): void {
@@ -153,6 +194,7 @@ export class Scene {
     controls.maxPolarAngle = 0.72 * Math.PI;
     controls.addEventListener('start', () => {
       this.framed = false;
+      this.glide = null;
     });
     controls.addEventListener('change', () => {
       this.invalidate();
@@ -182,7 +224,7 @@ export class Scene {
 
   /** Stand where the whole head fits, whatever the window's shape. */
   private frame(): void {
-    const angle = (VIEW_ANGLES[this.view]! * Math.PI) / 180;
+    const angle = (this.angle * Math.PI) / 180;
     const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const distance = Math.max(HALF_HEIGHT / slope, HALF_WIDTH / (slope * this.camera.aspect));
     this.camera.position
