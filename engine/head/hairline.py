@@ -19,6 +19,10 @@ EAR_CENTER = np.array([-14.0, -6.0])
 EAR_RADII = np.array([8.0, 12.0])
 FADE = (-7.0, 11.0)
 """Distance inside the outline [mm] over which hair grows from none to full."""
+SIDES = 0.66
+"""How densely hair grows at the sideburns and the nape, where it is cut shortest."""
+SIDES_BELOW = (42.0, -35.0)
+"""Heights [mm] between which it thins to that."""
 
 
 def hair_mask(vertices: FloatArray) -> FloatArray:
@@ -31,7 +35,8 @@ def hair_mask(vertices: FloatArray) -> FloatArray:
     distance += 1.1 * noise(vertices, 5.0, 5)
     # The front hairline is softer and less even than the nape.
     distance += 1.6 * noise(vertices, 11.0, 6) * smoothstep(40, 75, vertices[:, 2])
-    return smoothstep(*FADE, distance)
+    shorn = 1 - (1 - SIDES) * smoothstep(*SIDES_BELOW, vertices[:, 1])
+    return np.asarray(smoothstep(*FADE, distance) * shorn)
 
 
 def distance_inside(points: FloatArray, outline: FloatArray) -> FloatArray:

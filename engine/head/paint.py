@@ -163,7 +163,7 @@ def _brow_mask(canvas: Canvas) -> FloatArray:
 def _paint_unevenness(canvas: Canvas) -> None:
     broad, fine = noise(canvas.vertices, 9.0, 1), noise(canvas.vertices, 3.6, 2)
     canvas.scale(1 + 0.014 * broad + 0.011 * fine)
-    ruddy = 0.012 * noise(canvas.vertices, 13.0, 4)
+    ruddy = 0.008 * noise(canvas.vertices, 13.0, 4)
     canvas.colors[:, 0] *= 1 + ruddy
     canvas.colors[:, 1] *= 1 - ruddy
 

@@ -27,7 +27,7 @@ SEGMENTS = 72
 # The outline about the bowl: angle (0 forward, 90 up) and radius, mm.
 OUTLINE = (
     (0, 15.5), (30, 19.0), (60, 26.5), (90, 32.0), (120, 31.5), (150, 25.5), (180, 21.0),
-    (210, 21.5), (240, 26.5), (265, 31.0), (285, 30.0), (310, 22.5), (335, 16.5),
+    (210, 21.5), (240, 26.0), (265, 30.0), (285, 27.5), (310, 19.5), (335, 15.0),
 )  # fmt: skip
 RINGS = np.r_[np.linspace(0, 0.3, 5), np.linspace(0.36, 0.98, 19), 1.0, 1.0, 0.97, 0.9, 0.78, 0.62]
 FOLD = (0.0, 1.8, 4.2, 8.0, 14.0, 26.0)
@@ -108,7 +108,7 @@ def _relief(share: FloatArray, angle: FloatArray) -> FloatArray:
     height += 1.2 * smoothstep(-0.6, -0.9, up * share)  # lobe
     # The front edge dives into the cheek.
     dive = smoothstep(0.62, 1.0, share) * smoothstep(-0.05, 0.6, np.cos(angle))
-    return np.asarray(height - 12.0 * dive * smoothstep(-1.0, -0.6, up))
+    return np.asarray(height - 12.0 * dive * smoothstep(-1.0, -0.7, up))
 
 
 def _colors(local: FloatArray) -> FloatArray:

@@ -38,7 +38,7 @@ LIMBUS = np.array([0.05, 0.04, 0.035])
 SCLERA = np.array([0.66, 0.565, 0.50])
 SCLERA_PINK = np.array([0.46, 0.25, 0.21])
 CARUNCLE = np.array([0.50, 0.20, 0.17])
-CORNER_FILLER = np.array([0.40, 0.235, 0.20])
+CORNER_FILLER = np.array([0.31, 0.18, 0.155])
 
 
 def eye_parts() -> list[Part]:
@@ -145,7 +145,8 @@ def _sclera_colors(polar: FloatArray, around: FloatArray) -> FloatArray:
     colors = LIMBUS * (1 - from_limbus) + SCLERA * from_limbus
     colors = colors * (1 - to_back) + SCLERA_PINK * to_back
     height = EYE_RADIUS * np.sin(polar)[:, None] * np.sin(around)
-    shade = (1 - 0.62 * smoothstep(0.5, 5.2, height)) * (1 - 0.16 * smoothstep(-3, -5.5, height))
+    shade = (1 - 0.45 * smoothstep(0.5, 4.0, height)) * (1 - 0.45 * smoothstep(3.2, 5.4, height))
+    shade = shade * (1 - 0.16 * smoothstep(-3, -5.5, height))
     return np.asarray(np.broadcast_to(colors, (*height.shape, 3)) * shade[..., None])
 
 

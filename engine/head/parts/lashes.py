@@ -26,7 +26,7 @@ class Row:
     curl: int
 
 
-UPPER = Row(count=78, length=6.2, width=0.19, curl=1)
+UPPER = Row(count=96, length=6.2, width=0.17, curl=1)
 LOWER = Row(count=38, length=2.9, width=0.11, curl=-1)
 
 LENGTH_ALONG = ((0.0, 2.0, 5.0, 7.0, 8.0), (0.40, 0.75, 1.0, 1.0, 0.75))
