@@ -83,16 +83,21 @@ class Mixer:
         self._shares = {layer: Ramp.zeros(count) for layer in LAYERS}
         self._settled_at = 0
         self._merged: FloatArray | None = None
+        self._merged_at = 0
 
     def apply(self, keyframe: Keyframe, tick: int) -> None:
-        """Take a command that starts at `tick`; `Rig.check` has passed it."""
+        """Take a command that starts at `tick`; `Rig.check` has passed it.
+
+        The latest command says how long its layer holds and how much it weighs.
+        """
+        self._expire(tick)
         held = self._held[keyframe.layer]
         if keyframe.replace:
             held.action_units, held.muscles, held.axes, held.emotion = {}, {}, {}, None
         if keyframe.emotion is not None:
             held.emotion = keyframe.emotion
             held.action_units = self._emotion_units(*keyframe.emotion)
-        _merge(held.action_units, keyframe.action_units)
+        hold_units(self._rig, held.action_units, keyframe.action_units)
         _merge(held.muscles, keyframe.muscles)
         for group in GROUPS:
             for axis, value in getattr(keyframe, group).items():
@@ -107,8 +112,8 @@ class Mixer:
     def at(self, tick: int) -> FloatArray:
         """Return the merged command at `tick`, shape (channels,)."""
         self._expire(tick)
-        if self._merged is None or tick <= self._settled_at:
-            self._merged = self._merge_layers(tick)
+        if self._merged is None or self._merged_at <= self._settled_at:
+            self._merged, self._merged_at = self._merge_layers(tick), tick
         return self._merged
 
     def changing(self, tick: int) -> bool:
@@ -116,11 +121,14 @@ class Mixer:
         return tick <= self._settled_at
 
     def due(self, tick: int) -> bool:
-        """Return whether a layer's time is up at `tick`: a sleeping face must wake."""
-        return any(h.expires is not None and tick >= h.expires for h in self._held.values())
+        """Return whether the command moves at `tick` or a layer's time is up: a face must wake."""
+        return self.changing(tick) or any(
+            h.expires is not None and tick >= h.expires for h in self._held.values()
+        )
 
     def report(self, tick: int) -> dict[str, object]:
         """Return what each layer holds and the merged command, as plain data."""
+        self._expire(tick)
         return {
             "layers": {
                 layer: self._layer_report(held)
@@ -148,7 +156,9 @@ class Mixer:
 
     def _emotion_units(self, label: str, intensity: float) -> dict[str, float]:
         terms = self._rig.resolve_emotion(label).terms
-        return {term.key: term.intensity * intensity for term in terms}
+        units: dict[str, float] = {}
+        hold_units(self._rig, units, {term.key: term.intensity * intensity for term in terms})
+        return units
 
     def _expire(self, tick: int) -> None:
         for layer, held in self._held.items():
@@ -167,7 +177,8 @@ class Mixer:
         values.length[fresh] = 0.0
         values.move(np.where(claimed, target, values.target), tick, fade)
         shares.move(np.where(claimed, held.weight, 0.0), tick, fade)
-        self._settled_at = max(values.end(), shares.end(), self._settled_at, tick)
+        ramps = (*self._values.values(), *self._shares.values())
+        self._settled_at = max(tick, *(ramp.end() for ramp in ramps))
         self._merged = None
 
     def _vector(self, held: Held) -> tuple[FloatArray, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
@@ -203,11 +214,25 @@ class Mixer:
             report["emotion"] = {"label": held.emotion[0], "intensity": held.emotion[1]}
         return report
 
+    def _merged_units(self) -> dict[str, float]:
+        """Return what the layers' units come to, each layer over the lower by its weight."""
+        sides: dict[tuple[str, str], float] = {}
+        for held in (self._held[layer] for layer in LAYERS):
+            for key, value in held.action_units.items():
+                unit, side = self._rig.resolve_unit(key)
+                for place in ((unit.name, each) for each in side or "LR"):
+                    below = sides.get(place, 0.0)
+                    sides[place] = below + (value - below) * held.weight
+        units: dict[str, float] = {}
+        for name in dict.fromkeys(name for name, _ in sides):
+            left, right = (sides.get((name, each), 0.0) for each in "LR")
+            named = {unit_key(name, "L"): left, unit_key(name, "R"): right}
+            units.update({name: left} if left == right else {k: v for k, v in named.items() if v})
+        return units
+
     def _merged_report(self, tick: int) -> dict[str, object]:
         merged, channels = self.at(tick), self._rig.channels
-        units: dict[str, float] = {}
-        for layer in LAYERS:
-            units.update(self._held[layer].action_units)
+        units = self._merged_units()
         report: dict[str, object] = {
             "action_units": units,
             "muscles": {
@@ -219,6 +244,27 @@ class Mixer:
         for group, axes in GROUPS.items():
             report[group] = {axis: float(merged[channels.index(group, axis)]) for axis in axes}
         return report
+
+
+def hold_units(rig: Rig, held: dict[str, float], named: Mapping[str, float]) -> None:
+    """Take the named units into `held`, each under one name; 0 lets go of a unit.
+
+    A unit without side sets both sides and lets go of what each held by itself; one side sets its
+    own and leaves the other where it was. In one command, sides come after both.
+    """
+    resolved = [(*rig.resolve_unit(key), value) for key, value in named.items()]
+    for unit, side, value in sorted(resolved, key=lambda entry: entry[1] != ""):
+        left, right = (unit_key(unit.name, each) for each in "LR")
+        if side and unit.name in held:
+            held[left] = held[right] = held.pop(unit.name)
+        for stale in () if side else (left, right):
+            held.pop(stale, None)
+        _merge(held, {unit_key(unit.name, side): value})
+
+
+def unit_key(name: str, side: str) -> str:
+    """Return the one key under which a unit is held: "AU12", or "L12" for a side."""
+    return f"{side}{name.removeprefix('AU')}" if side else name
 
 
 def _merge(held: dict[str, float], named: Mapping[str, float]) -> None:

@@ -1,0 +1,114 @@
+"""What a face is asked to do: sides, fades, holds and layers, and an honest report of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import Keyframe, Rig, Simulator
+from engine.mixing import Mixer
+from engine.simulator import STILL_TICKS
+
+
+def units_of(mixer: Mixer, tick: int = 0, layer: str = "puppet") -> dict[str, float]:
+    """Return the units a layer holds."""
+    layers = mixer.report(tick)["layers"]
+    assert isinstance(layers, dict)
+    return dict(layers[layer]["action_units"]) if layer in layers else {}
+
+
+def held_after(rig: Rig, *commands: dict[str, float]) -> dict[str, float]:
+    """Return what the puppet layer holds after one command after another."""
+    mixer = Mixer(rig)
+    for command in commands:
+        mixer.apply(Keyframe(action_units=command), 0)
+    return units_of(mixer)
+
+
+@pytest.mark.parametrize(
+    ("commands", "held"),
+    [
+        (({"L12": 0.5}, {"AU12": 1.0}), {"AU12": 1.0}),
+        (({"L12": 0.5, "R12": 0.2}, {"AU12": 0.0}), {}),
+        (({"AU12": 1.0}, {"L12": 0.5}), {"L12": 0.5, "R12": 1.0}),
+        (({"AU12": 1.0}, {"L12": 0.0}), {"R12": 1.0}),
+        (({"L12": 0.5, "AU12": 1.0},), {"L12": 0.5, "R12": 1.0}),
+        (({"AU12": 1.0}, {"12": 0.5}), {"AU12": 0.5}),
+        (({"12": 0.5}, {"au12": 0.0}), {}),
+        (({"L12": 0.5}, {"LAU12": 0.0}), {}),
+    ],
+)
+def test_a_unit_is_held_once_whatever_it_is_called(standard_rig, commands, held):
+    assert held_after(standard_rig, *commands) == held
+
+
+def test_a_side_is_not_added_to_both(standard_rig):
+    mixer = Mixer(standard_rig)
+    mixer.apply(Keyframe(action_units={"AU12": 1.0}), 0)
+    mixer.apply(Keyframe(action_units={"L12": 0.5}), 0)
+    merged = mixer.at(1)
+    left = merged[standard_rig.muscle_names.index("zygomatic_major.L")]
+    right = merged[standard_rig.muscle_names.index("zygomatic_major.R")]
+    full = standard_rig.contraction({"AU12": 1.0})
+    assert right == full[standard_rig.muscle_names.index("zygomatic_major.R")]
+    assert left == pytest.approx(
+        standard_rig.contraction({"L12": 0.5})[standard_rig.muscle_names.index("zygomatic_major.L")]
+    )
+
+
+def test_an_expired_layer_does_not_come_back_with_the_next_command(standard_rig):
+    mixer = Mixer(standard_rig)
+    mixer.apply(Keyframe(action_units={"AU12": 1.0}, hold=0.5), 0)
+    mixer.apply(Keyframe(action_units={"AU1": 1.0}), 30)
+    assert units_of(mixer, 30) == {"AU1": 1.0}
+
+
+def test_asking_a_sleeping_face_what_it_holds_does_not_keep_it_asleep(standard_rig):
+    simulator = Simulator(standard_rig)
+    simulator.add("a")
+    simulator.apply("a", Keyframe(action_units={"AU12": 1.0}, hold=2.0, fade_out=0.2))
+    for _ in range(120):
+        simulator.step()
+    assert simulator.frame("a").asleep
+    assert simulator.report("a")["layers"] == {}
+    for _ in range(90):
+        simulator.step()
+    assert np.abs(simulator.frame("a").displacements).max() < 0.05
+
+
+def test_a_long_fade_that_is_overtaken_keeps_no_face_awake(standard_rig):
+    simulator = Simulator(standard_rig)
+    simulator.add("a")
+    simulator.apply("a", Keyframe(action_units={"AU5": 1.0}, fade=60.0))
+    simulator.step()
+    simulator.apply("a", Keyframe(replace=True))
+    for _ in range(60 + STILL_TICKS):
+        simulator.step()
+    assert simulator.frame("a").asleep
+
+
+def test_the_merged_report_weighs_layers_and_tells_sides(standard_rig):
+    mixer = Mixer(standard_rig)
+    mixer.apply(Keyframe(action_units={"AU12": 0.4, "AU1": 1.0}, layer="emotion"), 0)
+    mixer.apply(Keyframe(action_units={"AU12": 0.8}, layer="speech", weight=0.5), 0)
+    mixer.apply(Keyframe(action_units={"L1": 0.2}), 0)
+    merged = mixer.report(1)["merged"]
+    assert isinstance(merged, dict)
+    assert merged["action_units"] == pytest.approx({"AU12": 0.6, "L1": 0.2, "R1": 1.0})
+
+
+def test_a_ramp_asked_late_has_arrived(standard_rig):
+    mixer = Mixer(standard_rig)
+    mixer.apply(Keyframe(action_units={"AU12": 1.0}, fade=1.0), 0)
+    mixer.at(10)
+    assert mixer.at(400) == pytest.approx(standard_rig.contraction({"AU12": 1.0}))
+
+
+def test_a_fade_goes_on_through_a_live_edit(standard_rig):
+    stiffer = standard_rig.derive(tissue={"damping": 50.0})
+    here, there = Mixer(standard_rig), Mixer(standard_rig)
+    for mixer in (here, there):
+        mixer.apply(Keyframe(action_units={"AU12": 1.0}, fade=1.0, hold=1.0), 0)
+    there = there.moved_to(stiffer, 20)
+    for tick in range(20, 200, 10):
+        assert here.at(tick) == pytest.approx(there.at(tick), abs=1e-12)
