@@ -68,6 +68,9 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
     head, parameters = rig.head, rig.parameters
     tissue = assemble(head, parameters, literal_springs=model.springs == "literal")
     omega = largest_frequency(tissue.arrays, tissue.layers.normals)
+    if tissue.hardened:
+        # Masses hold the phases that the linear view leaves out, to just this frequency.
+        omega = max(omega, parameters.mass_frequency)
     least = least_substeps(omega, parameters.damping, model.integrator, 1.0 / TICKS_PER_SECOND)
     if substeps is not None and substeps < least:
         raise InvalidValue(

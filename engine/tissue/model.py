@@ -34,6 +34,14 @@ LIGAMENT_POINTS = ("M4_3", "M4_4", "C4_5")
 PRESSURE_FREE_RINGS = ("EB", "E0", "E1", "E2", "S1", "M0")
 """Rings of lids and inner lips: their columns have no bone under them."""
 BARRIER_FLOOR = 0.3
+SPARED_SHARE = 2.1
+"""How much stiffer than its mass says a node may be in every hard phase at once.
+
+Few nodes feel the compression guard, the skull's wall or stretched ties at a time, and faces stay
+within the stability bound as they are built in. Where an edit goes beyond, mass counts all of it.
+"""
+SPARED_COLUMNS = 0.9
+"""The same for the fat columns alone, which many nodes feel when the jaw opens."""
 LEAST_COLUMN_SHARE = 0.15
 
 
@@ -50,6 +58,7 @@ class TissueModel:
         scale: Node area over reference area, shape (n,); muscle forces scale with it.
         held: Epidermis nodes that are moved and not simulated: outer ring and tarsal plates, (n,).
         lids: Nodes that turn with the lids.
+        hardened: Whether masses had to count phases that a linear view of the rest leaves out.
     """
 
     parameters: TissueParameters
@@ -60,6 +69,7 @@ class TissueModel:
     scale: FloatArray
     held: BoolArray
     lids: Lids
+    hardened: bool = False
 
     @property
     def node_count(self) -> int:
@@ -85,8 +95,11 @@ def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool)
     pressure = _pressure(head, sheet, layers, parameters)
     node_count = 3 * head.sheet_count
     stiffness = nodal_stiffness(springs, anchors, barrier, plate, pressure, node_count)
+    columns = column_stiffness(layers, pressure)
+    hard = hardest_stiffness(springs, anchors, barrier, plate, columns, node_count)
     held = _held(head)
-    mass = 2.0 * stiffness / parameters.mass_frequency**2
+    hardened = (hard > SPARED_SHARE * stiffness) | (columns > SPARED_COLUMNS * stiffness)
+    mass = 2.0 * np.where(hardened, hard, stiffness) / parameters.mass_frequency**2
     inverse_mass = np.where(np.tile(held, 3), 0.0, 1.0 / mass)
     arrays = Tissue(
         rest=np.ascontiguousarray(layers.nodes.T),
@@ -101,7 +114,15 @@ def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool)
         contacts=contacts_of(head),
     )
     return TissueModel(
-        parameters, sheet, layers, arrays, _dead_load(arrays, layers), scale, held, lids_of(head)
+        parameters,
+        sheet,
+        layers,
+        arrays,
+        _dead_load(arrays, layers),
+        scale,
+        held,
+        lids_of(head),
+        hardened=bool(hardened.any()),
     )
 
 
@@ -147,6 +168,69 @@ def nodal_stiffness(
         columns: FloatArray = np.zeros(n)
         np.add.at(columns, pressure.quads.ravel(), corner)
         total += np.tile(columns, 3)
+    return total
+
+
+COLUMN_GROWTH = 3.0
+"""How much a column of fat stiffens as a wide jaw stretches it; found at 25 degrees."""
+
+
+def hardest_stiffness(
+    springs: Springs,
+    anchors: Anchors,
+    barrier: Barrier,
+    plate: Plate,
+    columns: FloatArray,
+    node_count: int,
+) -> FloatArray:
+    """Return D_i with every phase of every term at its stiffest, shape (nodes,).
+
+    Half of Gershgorin's bound on the rows of the stiffness matrix: the compression guard, the
+    stretched ties and the wall of the skull count too, and the barrier in full.
+
+    Args:
+        springs, anchors, barrier, plate: The terms.
+        columns: From `column_stiffness`.
+        node_count: Nodes of all layers.
+    """
+    n = node_count // 3
+    total = columns.copy()
+    hardest = np.maximum(springs.high, springs.low + springs.guard)
+    np.add.at(total, springs.first, hardest)
+    np.add.at(total, springs.second, hardest)
+    total[2 * n :] += 0.5 * np.maximum(
+        anchors.tangential * (1.0 + anchors.excess), anchors.normal * (1.0 + anchors.skull)
+    )
+    if len(barrier.stiffness):
+        total += np.repeat([1.0, 2.0, 1.0], n) * np.tile(barrier.stiffness, 3)
+    if len(plate.values):
+        total[:n] += 0.5 * np.add.reduceat(np.abs(plate.values), plate.start[:-1])
+    return total
+
+
+def column_stiffness(layers: Layers, pressure: Pressure) -> FloatArray:
+    """Return each node's share D_i of the fat columns at rest, shape (nodes,).
+
+    Half of the row sum of k ∇V ∇Vᵀ / V0²; a tall column resists shear far more than pressing.
+    """
+    n = len(layers.normals)
+    total = np.zeros(3 * n)
+    quads = pressure.quads
+    if not len(quads):
+        return total
+    middle = layers.nodes.reshape(3, n, 3).mean(axis=0)
+    p = middle[quads[:, 2]] - middle[quads[:, 0]]
+    r = middle[quads[:, 3]] - middle[quads[:, 1]]
+    d = middle[quads].mean(axis=1) - layers.bone[quads].mean(axis=1)
+    area, by_p, by_r = 0.5 * np.cross(p, r), 0.5 * np.cross(r, d), 0.5 * np.cross(d, p)
+    corners = np.stack(
+        [0.25 * area - by_p, 0.25 * area - by_r, 0.25 * area + by_p, 0.25 * area + by_r], axis=1
+    )
+    gradient = np.linalg.norm(corners, axis=2) / 3.0
+    rows = (pressure.stiffness / pressure.volume**2)[:, None] * gradient
+    rows = 0.5 * COLUMN_GROWTH * rows * 3.0 * gradient.sum(axis=1, keepdims=True)
+    for layer in range(3):
+        np.add.at(total, quads.ravel() + layer * n, rows.ravel())
     return total
 
 

@@ -167,7 +167,7 @@ LIMITS: Mapping[str, tuple[float, float]] = {
     "skull_stiffness": (0.0, 50.0),
     "skull_gap": (0.0, 20.0),
     "damping": (5.0, 200.0),
-    "mass_frequency": (100.0, 1500.0),
+    "mass_frequency": (100.0, 1000.0),
     "activation_lag": (0.0, 2.0),
     "lid_lag": (0.0, 2.0),
     "pretension": (0.0, 0.4),
@@ -175,7 +175,7 @@ LIMITS: Mapping[str, tuple[float, float]] = {
     "layer_gap": (0.0, 1.0),
     "plate": (0.0, 500.0),
     "force_smoothing": (0, 20),
-    "fat_pressure": (0.0, 1000.0),
+    "fat_pressure": (0.0, 600.0),
     "ligament": (0.0, 20.0),
     "uniform_depth": (2.0, 40.0),
 }
