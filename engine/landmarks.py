@@ -1,8 +1,8 @@
 """The 68 landmarks of the iBUG 300-W markup, as points of the built-in heads.
 
-Order and meaning: Sagonas et al., "300 Faces in-the-Wild Challenge", 2013. Trackers number them from
-the face's own right; 0-16 run along the jaw, 17-26 the brows, 27-35 the nose, 36-47 the eyes, 48-67
-the lips. The jaw's points are silhouettes in a picture and fixed points of skin here.
+Order and meaning: Sagonas et al., "300 Faces in-the-Wild Challenge", 2013. Trackers number them
+from the face's own right; 0-16 run along the jaw, 17-26 the brows, 27-35 the nose, 36-47 the eyes,
+48-67 the lips. The jaw's points are silhouettes in a picture and fixed points of skin here.
 """
 
 from __future__ import annotations
