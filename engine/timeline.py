@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 
-from .errors import InvalidTrack
-from .facs import LETTERS as INTENSITY_LETTERS
-from .facs import parse_facs
+from .errors import InvalidNotation, InvalidTrack
+from .facs import LETTERS, parse_facs
 
 LAYERS = ("idle", "mood", "emotion", "speech", "puppet")
 """Layers from the lowest to the highest; a higher one overrides a lower, muscle by muscle."""
 TICKS_PER_SECOND = 60
 MAX_SECONDS = 3600.0
+SECONDS_AFTER_LAST = 1.0
+"""How long a timeline without a duration goes on after its last keyframe has played."""
 
 _NOTHING: Mapping[str, float] = MappingProxyType({})
 
@@ -91,7 +93,7 @@ class Timeline:
     def from_json(cls, data: Mapping[str, object]) -> Timeline:
         """Read `{"timeline": [{"time": 0.0, …}, …], "duration": 10}`.
 
-        Without a duration the timeline ends a second after its last keyframe has played.
+        Without a duration it ends as `of` says.
 
         Raises:
             InvalidTrack: With the keyframe and field that cannot be read.
@@ -101,11 +103,21 @@ class Timeline:
             raise InvalidTrack("a timeline needs 'timeline': a list of one or more keyframes")
         keyframes = tuple(_keyframe(index, entry) for index, entry in enumerate(entries))
         duration = data.get("duration")
+        return cls.of(keyframes, None if duration is None else _finite("'duration'", duration))
+
+    @classmethod
+    def of(cls, keyframes: Sequence[Keyframe], duration: float | None = None) -> Timeline:
+        """Return a timeline of `duration` seconds, or one that ends when all has been seen.
+
+        Without a duration that is a second after the last keyframe has played, its hold and its
+        fade-out included.
+
+        Raises:
+            InvalidTrack: For a time or a duration outside its range.
+        """
         if duration is None:
-            duration = 1.0 + max(k.time + k.fade + (k.hold or 0.0) for k in keyframes)
-        if isinstance(duration, bool) or not isinstance(duration, int | float):
-            raise InvalidTrack(f"'duration' is {duration!r}; expected seconds")
-        return cls(keyframes, float(duration))
+            duration = max(map(_end, keyframes), default=0.0) + SECONDS_AFTER_LAST
+        return cls(tuple(keyframes), duration)
 
     def to_json(self) -> dict[str, object]:
         """Return the timeline as `from_json` reads it."""
@@ -154,10 +166,12 @@ def _keyframe(index: int, entry: object) -> Keyframe:
 
 
 def _facs(index: int, value: object) -> dict[str, float]:
-
     if not isinstance(value, str):
         raise InvalidTrack(f"keyframe {index}: facs is {value!r}; expected a string")
-    return {term.key: term.intensity for term in parse_facs(value)}
+    try:
+        return {term.key: term.intensity for term in parse_facs(value)}
+    except InvalidNotation as error:
+        raise InvalidTrack(f"keyframe {index}: facs: {error}") from error
 
 
 def _emotion(index: int, value: object) -> tuple[str, float]:
@@ -179,13 +193,24 @@ def _numbers(index: int, name: str, value: object) -> dict[str, float]:
 
 
 def _intensity(index: int, name: str, value: object) -> float:
-
-    if isinstance(value, str) and value.upper() in INTENSITY_LETTERS:
-        return INTENSITY_LETTERS[value.upper()]
+    if isinstance(value, str) and value.upper() in LETTERS:
+        return LETTERS[value.upper()]
     return _number(index, name, value)
 
 
 def _number(index: int, name: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InvalidTrack(f"keyframe {index}: {name} is {value!r}; expected a finite number")
-    return float(value)
+    return _finite(f"keyframe {index}: {name}", value)
+
+
+def _finite(place: str, value: object) -> float:
+    if not isinstance(value, bool) and isinstance(value, int | float):
+        with suppress(OverflowError):  # An integer beyond every float is not finite either.
+            if math.isfinite(value):
+                return float(value)
+    raise InvalidTrack(f"{place} is {value!r}; expected a finite number")
+
+
+def _end(keyframe: Keyframe) -> float:
+    """Return when a keyframe has played, its fade-out included if it lets go [s]."""
+    lets_go = 0.0 if keyframe.hold is None else keyframe.hold + keyframe.fade_out
+    return keyframe.time + keyframe.fade + lets_go

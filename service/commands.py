@@ -30,7 +30,6 @@ from .errors import Unprocessable, refused_by_engine
 
 # FACS' own bands of the intensity scale are uneven: trace, slight, marked, severe, maximum.
 BANDED: Mapping[str, float] = {"A": 0.10, "B": 0.20, "C": 0.55, "D": 0.90, "E": 1.00}
-_SECONDS_AFTER_LAST = 1.0
 
 
 @dataclass(frozen=True)
@@ -108,12 +107,8 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
             refused.message = f"keyframe {index}: {refused.message}"
             raise refused from error
         keyframes.append(keyframe)
-    duration = clip.duration
-    if duration is None:
-        ends = [k.time + k.fade + (k.hold + k.fade_out if k.hold else 0.0) for k in keyframes]
-        duration = max(ends, default=0.0) + _SECONDS_AFTER_LAST
     try:
-        return Timeline(tuple(keyframes), duration), warnings
+        return Timeline.of(keyframes, clip.duration), warnings
     except EngineError as error:
         raise refused_by_engine(error) from error
 

@@ -33,7 +33,7 @@ def test_what_is_written_reads_back_the_same():
 
 def test_without_a_duration_it_lasts_a_second_longer_than_it_plays():
     entries = {"timeline": [{"time": 2.0, "fade": 0.5, "hold": 1.0, "action_units": {"AU1": 1}}]}
-    assert Timeline.from_json(entries).duration == pytest.approx(4.5)
+    assert Timeline.from_json(entries).duration == pytest.approx(2.0 + 0.5 + 1.0 + 0.4 + 1.0)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,10 @@ def test_without_a_duration_it_lasts_a_second_longer_than_it_plays():
         ({"timeline": [{"layer": "top"}]}, "layer is 'top'"),
         ({"timeline": [{"action_units": {"AU1": True}}]}, "AU1 is True"),
         ({"timeline": [{"emotion": 5}]}, "emotion is 5"),
+        ({"timeline": [{"time": 10**400}]}, "keyframe 0: time"),
+        ({"timeline": [{"time": 0}, {"facs": "12Z"}]}, "keyframe 1: facs"),
         ({"timeline": [{"time": 0}], "duration": "long"}, "duration"),
+        ({"timeline": [{"time": 0}], "duration": 10**400}, "duration"),
         ({"timeline": [{"time": 0}], "duration": -2}, "must lie between"),
     ],
 )

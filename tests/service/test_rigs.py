@@ -103,6 +103,8 @@ def test_the_same_changes_give_the_same_rig(client: TestClient) -> None:
         {"recipe": {"age": 80}},
         {"tissue": {"nonsense": 1}},
         {"tissue": {"damping": "much"}},
+        {"tissue": {"damping": 10**400}},
+        {"muscles": {"zygomatic_major.L": {"radius": -(10**400)}}},
         {"tissue": {"damping": [[[[[[[[[[1]]]]]]]]]]}},
         {"muscles": {"biceps.L": {"radius": 1}}},
         {"muscles": {"zygomatic_major.L": {"attachment": "here"}}},
