@@ -74,14 +74,6 @@ class Springs(NamedTuple):
     literal: bool
 
 
-class Incidence(NamedTuple):
-    """Which springs meet at each node, in order: `springs[start[i]:start[i + 1]]`, signed."""
-
-    start: IndexArray
-    springs: IndexArray
-    signs: FloatArray
-
-
 class Anchors(NamedTuple):
     """Ties of the hypodermis to the skull, which cannot be entered (section 5.2).
 
@@ -171,7 +163,6 @@ class Tissue(NamedTuple):
     inverse_mass: FloatArray
     damping: float
     springs: Springs
-    incidence: Incidence
     anchors: Anchors
     barrier: Barrier
     plate: Plate
@@ -232,12 +223,12 @@ def workspace(node_count: int, spring_count: int) -> Workspace:
 
 @kernel
 def add_spring_forces(
-    x: FloatArray, springs: Springs, incidence: Incidence, tension: FloatArray, force: FloatArray
+    x: FloatArray, springs: Springs, tension: FloatArray, force: FloatArray
 ) -> None:
     """Add Σ_j k (|d| - d0) d/|d| at each node (Eqs. 19-20) to `force`.
 
-    First every spring's tension, then every node's sum in a fixed order: the first loop is vector
-    code, and the bits do not depend on anything else that runs.
+    First every spring's tension, then both of its ends, spring by spring: the first loop is vector
+    code, and the second has one order, so the bits do not depend on anything else that runs.
     """
     first, second = springs.first, springs.second
     rest, low, high, guard = springs.rest, springs.low, springs.high, springs.guard
@@ -268,17 +259,15 @@ def add_spring_forces(
             t0[s] = pull * dx
             t1[s] = pull * dy
             t2[s] = pull * dz
-    start, order, signs = incidence.start, incidence.springs, incidence.signs
-    for i in range(start.shape[0] - 1):
-        fx = fy = fz = 0.0
-        for q in range(start[i], start[i + 1]):
-            s, sign = order[q], signs[q]
-            fx += sign * t0[s]
-            fy += sign * t1[s]
-            fz += sign * t2[s]
-        force[0, i] += fx
-        force[1, i] += fy
-        force[2, i] += fz
+    f0, f1, f2 = force[0], force[1], force[2]
+    for s in range(first.shape[0]):
+        i, j = first[s], second[s]
+        f0[i] += t0[s]
+        f1[i] += t1[s]
+        f2[i] += t2[s]
+        f0[j] -= t0[s]
+        f1[j] -= t1[s]
+        f2[j] -= t2[s]
 
 
 @kernel
@@ -331,16 +320,21 @@ def add_barrier_forces(
 
 
 @kernel
-def add_plate_forces(x: FloatArray, rest: FloatArray, plate: Plate, force: FloatArray) -> None:
-    """Resist bending of the epidermis: -K (x - rest), K sparse."""
+def add_plate_forces(
+    x: FloatArray, rest: FloatArray, plate: Plate, scratch: FloatArray, force: FloatArray
+) -> None:
+    """Resist bending of the epidermis: -K (x - rest), K sparse; `scratch` takes x - rest."""
     start, columns, values = plate.start, plate.columns, plate.values
+    u0, u1, u2 = scratch[0], scratch[1], scratch[2]
+    for i in range(start.shape[0] - 1):
+        u0[i], u1[i], u2[i] = x[0, i] - rest[0, i], x[1, i] - rest[1, i], x[2, i] - rest[2, i]
     for i in range(start.shape[0] - 1):
         fx = fy = fz = 0.0
         for q in range(start[i], start[i + 1]):
             j, k = columns[q], values[q]
-            fx += k * (x[0, j] - rest[0, j])
-            fy += k * (x[1, j] - rest[1, j])
-            fz += k * (x[2, j] - rest[2, j])
+            fx += k * u0[j]
+            fy += k * u1[j]
+            fz += k * u2[j]
         force[0, i] -= fx
         force[1, i] -= fy
         force[2, i] -= fz
@@ -513,12 +507,12 @@ def static_forces(
 ) -> None:
     """Set `force` to f - Q of Eq. 21: everything that acts on the nodes but damping."""
     force[:] = skull.load
-    add_spring_forces(x, tissue.springs, tissue.incidence, tension, force)
+    add_spring_forces(x, tissue.springs, tension, force)
     add_anchor_forces(x, tissue.anchors, skull.targets, skull.normals, force)
     if tissue.barrier.stiffness.shape[0] > 0:
         add_barrier_forces(x, tissue.barrier, skull.normals, force)
     if tissue.plate.values.shape[0] > 0:
-        add_plate_forces(x, tissue.rest, tissue.plate, force)
+        add_plate_forces(x, tissue.rest, tissue.plate, tension, force)
     if tissue.pressure.quads.shape[0] > 0:
         add_pressure_forces(x, skull.bone, tissue.pressure, force)
     if pull.kinds.shape[0] > 0:
@@ -595,9 +589,9 @@ def resolve_teeth(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
     for q in range(contacts.tooth_nodes.shape[0]):
         i = contacts.tooth_nodes[q]
         lateral = abs(x[0, i])
-        cell = int(lateral)
-        if cell >= arch.shape[0] - 1:
+        if not lateral < arch.shape[0] - 1:  # also true for NaN, which has no cell
             continue
+        cell = int(lateral)
         slope = arch[cell + 1] - arch[cell]
         front = arch[cell] + (lateral - cell) * slope + contacts.tooth_clearance[q]
         # Level in the middle: a kink there would push the midline to one side.

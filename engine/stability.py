@@ -24,7 +24,8 @@ def stiffness_matrix(tissue: Tissue, normals: FloatArray) -> sp.csr_array:
     Every spring at k_H, the anchors, the barrier everywhere at work, the plate. Left out, as in
     the masses, is what only few nodes feel at a time: the compression guard and the skull's wall;
     the fat's pressure is soft beside the springs. Where an edit makes them strong, masses count
-    them (`tissue.model`) and their own bound, the mass frequency, is taken instead. Degrees of freedom run node by node, x, y, z.
+    them (`tissue.model`) and their own bound, the mass frequency, is taken instead. Degrees of
+    freedom run node by node, x, y, z.
 
     Args:
         tissue: The rig's arrays.

@@ -23,7 +23,7 @@ from ..head import Head
 from .contact import TARSAL_RINGS, Lids, contacts_of, lids_of, ring_and_spoke
 from .layers import Layers, Sheet, sheet_of, stack_layers
 from .parameters import TissueParameters
-from .springs import build_springs, incidence_of, reference_area
+from .springs import build_springs, reference_area
 
 NORMAL_ANCHOR_FLOOR = 0.25
 """Least regional weight of the normal tie: even loose skin does not lift off the skull."""
@@ -106,7 +106,6 @@ def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool)
         inverse_mass=inverse_mass,
         damping=parameters.damping,
         springs=springs,
-        incidence=incidence_of(springs, node_count),
         anchors=anchors,
         barrier=barrier,
         plate=plate,
@@ -188,10 +187,7 @@ def hardest_stiffness(
     Half of Gershgorin's bound on the rows of the stiffness matrix: the compression guard, the
     stretched ties and the wall of the skull count too, and the barrier in full.
 
-    Args:
-        springs, anchors, barrier, plate: The terms.
-        columns: From `column_stiffness`.
-        node_count: Nodes of all layers.
+    `columns` is from `column_stiffness`.
     """
     n = node_count // 3
     total = columns.copy()

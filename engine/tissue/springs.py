@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..dynamics import Incidence, Springs
+from ..dynamics import Springs
 from .layers import Layers, Sheet
 from .parameters import TissueParameters
 
@@ -89,17 +89,6 @@ def build_springs(
         guard_strain=p.guard_strain,
         literal=literal,
     )
-
-
-def incidence_of(springs: Springs, node_count: int) -> Incidence:
-    """Return each node's springs, in spring order: +1 where the node is the spring's first end."""
-    count = len(springs.first)
-    ends = np.concatenate([springs.first, springs.second])
-    signs = np.concatenate([np.ones(count), -np.ones(count)])
-    index = np.concatenate([np.arange(count), np.arange(count)])
-    order = np.argsort(ends, kind="stable")
-    start = np.searchsorted(ends[order], np.arange(node_count + 1))
-    return Incidence(start.astype(np.int32), index[order].astype(np.int32), signs[order])
 
 
 def _lattice_factor(sheet: Sheet) -> float:

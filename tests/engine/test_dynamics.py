@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from small_tissue import FAT, SmallTissue, small_tissue
 
-from engine.dynamics import TABLEAUS
-from engine.tissue import PAPER_PARAMETERS, Layered
+from engine.dynamics import TABLEAUS, resolve_teeth
+from engine.tissue import PAPER_PARAMETERS, Layered, assemble
 
 
 def shaken(tissue: SmallTissue, seed: int, size: float) -> np.ndarray:
@@ -58,7 +58,7 @@ def test_one_spring_by_hand():
     # d0 = 10, k_L = 2, k_H = 5, ε_c = 0.1. Stretched to 12: 2·2 + 3·(2 - 1) = 7 continuous,
     # 5·2 = 10 literal; to 10.5: 1 in both. Compressed to 8 with guard 4 beyond 5 %: -4 - 4·1.5.
     def tension(length: float, *, literal: bool) -> float:
-        from engine.dynamics import Incidence, Springs, add_spring_forces
+        from engine.dynamics import Springs, add_spring_forces
 
         one = np.array([0], np.int32), np.array([1], np.int32)
         springs = Springs(
@@ -71,12 +71,9 @@ def test_one_spring_by_hand():
             0.05,
             literal,
         )
-        order = Incidence(
-            np.array([0, 1, 2], np.int32), np.zeros(2, np.int32), np.array([1.0, -1.0])
-        )
         x = np.array([[0.0, length], [0.0, 0.0], [0.0, 0.0]])
         force = np.zeros_like(x)
-        add_spring_forces(x, springs, order, np.zeros((3, 1)), force)
+        add_spring_forces(x, springs, np.zeros((3, 1)), force)
         assert force[0, 1] == -force[0, 0]
         return float(force[0, 0])
 
@@ -205,3 +202,15 @@ def test_stiffness_below_the_knee_is_low_and_above_it_high():
 
     assert far(hard, small) == pytest.approx(far(soft, small), rel=1e-3)
     assert far(hard, large) < 0.9 * far(soft, large)
+
+
+def test_contact_with_the_teeth_reads_no_arch_where_there_is_none(standard_rig):
+    arrays = assemble(standard_rig.head, standard_rig.parameters, literal_springs=False).arrays
+    contacts = arrays.contacts
+    for place in (math.nan, math.inf, 1.0e30, len(contacts.arch) - 1.0):
+        x, v = arrays.rest.copy(), np.zeros_like(arrays.rest)
+        x[0, contacts.tooth_nodes] = place
+        before = x.copy()
+        resolve_teeth(x, v, contacts)
+        assert np.array_equal(x, before, equal_nan=True)
+        assert not v.any()

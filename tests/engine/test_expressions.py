@@ -72,6 +72,24 @@ def test_settling_and_path_dependence_hold_their_bar(quality):
     assert max(quality[unit].path for unit in BARRED) <= FARTHEST_PATH
 
 
+def test_every_action_unit_and_emotion_is_still_after_two_seconds(standard_rig):
+    simulator = Simulator(standard_rig)
+    for unit in standard_rig.action_units:
+        simulator.add(unit)
+        simulator.apply(unit, Keyframe(action_units={unit: 1.0}))
+    for label in standard_rig.emotions:
+        simulator.add(label)
+        simulator.apply(label, Keyframe(emotion=(label, 1.0)))
+    for _ in range(120):
+        simulator.step()
+    speeds = {
+        name: float(np.linalg.norm(state.v, axis=0).max())
+        for name, state in simulator._faces.items()
+    }
+    # 5 mm/s is 0.08 mm a frame; at most 0.3 is measured, and nearly every face sleeps by then.
+    assert max(speeds.values()) < 5.0, speeds
+
+
 def test_two_hundred_random_mixes_stay_bounded(standard_rig):
     rng = np.random.default_rng(20011)
     simulator = Simulator(standard_rig)
