@@ -84,6 +84,7 @@ def serve(
     from .bodies import explain
     from .serving import serve_until_stopped
     from .settings import Settings
+    from .store import Store, StoreUnavailable
 
     if max(workers, _asked_workers()) > 1:
         _refuse(
@@ -94,6 +95,11 @@ def serve(
         settings = Settings(**{name: value for name, value in asked.items() if value is not None})
     except ValidationError as error:
         _refuse(f"A setting is not valid: {explain(list(error.errors()))}.")
+    try:
+        # Opened once beforehand: a server that fails while it starts answers with a traceback.
+        Store(settings.database).close()
+    except StoreUnavailable as unavailable:
+        _refuse(str(unavailable))
     try:
         asyncio.run(serve_until_stopped(settings, _console))
     except KeyboardInterrupt:

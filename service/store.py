@@ -21,6 +21,7 @@ from sqlalchemy import (
     select,
     update,
 )
+from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, sessionmaker
 from sqlalchemy.pool import StaticPool
 
@@ -75,12 +76,28 @@ class ClipRow(Table):
     finished: Mapped[float | None] = mapped_column(Float, default=None)
 
 
+class StoreUnavailable(Exception):
+    """A database that cannot be opened; the message is one sentence."""
+
+
 class Store:
     """Connections to one database; every method is one short transaction."""
 
     def __init__(self, url: str) -> None:
-        self.engine = _connect(url)
-        Table.metadata.create_all(self.engine)
+        """Open the database at `url` and make the tables that it lacks.
+
+        Raises:
+            StoreUnavailable: If it cannot be opened, or its driver is not installed.
+        """
+        try:
+            self.engine = _connect(url)
+            Table.metadata.create_all(self.engine)
+        except (OSError, ImportError, SQLAlchemyError) as error:
+            reason = getattr(error, "orig", None) or error
+            raise StoreUnavailable(
+                f"The database {_without_password(url)} cannot be opened ({reason}); set "
+                "RISORIUS_DATA_DIR to a folder that can be written, or RISORIUS_DATABASE_URL."
+            ) from error
         self._session = sessionmaker(self.engine, expire_on_commit=False)
 
     def close(self) -> None:
@@ -200,6 +217,13 @@ class Store:
     def _get(self, table: type[Row], key: str) -> Row | None:
         with self._session() as session:
             return session.get(table, key)
+
+
+def _without_password(url: str) -> str:
+    try:
+        return make_url(url).render_as_string(hide_password=True)
+    except ArgumentError:
+        return "of RISORIUS_DATABASE_URL"
 
 
 def _connect(url: str) -> Engine:

@@ -96,7 +96,8 @@ def test_only_one_worker_is_served(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "one worker" in refused(run("serve"))
 
 
-def test_a_port_in_use_is_said() -> None:
+def test_a_port_in_use_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RISORIUS_DATA_DIR", str(tmp_path))
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -107,6 +108,28 @@ def test_a_port_in_use_is_said() -> None:
 def test_a_setting_that_is_not_valid_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RISORIUS_MAX_SESSIONS", "many")
     assert "max_sessions" in refused(run("serve"))
+
+
+@pytest.mark.parametrize(
+    ("variable", "value"),
+    [
+        ("DATA_DIR", "{file}/data"),
+        ("DATABASE_URL", "nonsense"),
+        ("DATABASE_URL", "sqlite:///{folder}"),
+        ("DATABASE_URL", "postgresql://someone:secret@nowhere/faces"),
+    ],
+)
+def test_a_database_that_cannot_be_opened_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, variable: str, value: str
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("")
+    monkeypatch.setenv("RISORIUS_DATA_DIR", str(tmp_path / "data"))
+    monkeypatch.setenv(f"RISORIUS_{variable}", value.format(file=file, folder=tmp_path))
+    said = refused(run("serve", "--port", 0))
+    assert "cannot be opened" in said
+    assert "RISORIUS_DATA_DIR" in said
+    assert "secret" not in said
 
 
 def test_a_service_starts_says_where_and_stops(tmp_path: Path) -> None:
