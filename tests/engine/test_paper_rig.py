@@ -16,7 +16,7 @@ from engine.tissue.layers import sheet_of
 
 TABLE_1 = [f"AU{n}" for n in (1, 2, 4, 5, 6, 7, 9, 10, 12, 14, 15, 16, 17, 20, 23, 25, 26)]
 EMOTIONS = ("happiness", "sadness", "fear", "anger", "surprise", "disgust")
-LEAST_IN_RANGE = 14
+LEAST_IN_RANGE = 16
 MOST_FOLDED = 30
 """Of 1,480 drawn triangles; the paper's layers are not under tension and may crumple."""
 BUZZ_MM_S = 30.0
