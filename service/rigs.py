@@ -6,6 +6,7 @@ import hashlib
 import importlib.util
 import os
 import tempfile
+import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
@@ -30,6 +31,8 @@ from .store import Store
 _LOG = structlog.get_logger("rigs")
 _RIGS_IN_MEMORY = 64
 _FILES_IN_MEMORY = 16
+_PASSING_SECONDS = 60.0
+_UNIT_FIELDS = {"muscles", "jaw", "title", "region"}
 _CHANGES = ("tissue", "muscles", "action_units", "emotions", "name")
 
 
@@ -70,8 +73,16 @@ class Rigs:
         base = await self.get(row.base)
         return await self._rigs.get(name, lambda: _derive(base, row.changes))
 
-    async def derive(self, base: Rig, changes: Mapping[str, Any]) -> tuple[Rig, bool]:
+    async def derive(
+        self, base: Rig, changes: Mapping[str, Any], *, passing: bool = False
+    ) -> tuple[Rig, bool]:
         """Return the rig that `changes` make of `base`, and whether it is new here.
+
+        Args:
+            base: What is changed.
+            changes: By `tissue`, `muscles`, `action_units`, `emotions` and `name`.
+            passing: Whether it is one step of a live edit: it then makes room for others once no
+                session and no clip is on it.
 
         Raises:
             Unprocessable: If a name is unknown or a value cannot be used.
@@ -79,11 +90,19 @@ class Rigs:
         """
         changes = {key: value for key, value in changes.items() if value is not None}
         rig = await self._rigs.get(_key(base.id, changes), lambda: _derive(base, changes))
-        if self._names.get(rig.id, rig.id) in BUILTIN_RIGS or self._store.rig(rig.id):
+        if self._names.get(rig.id, rig.id) in BUILTIN_RIGS:
             return rig, False
-        if len(self._store.rigs()) >= self._limit:
-            raise Busy("too_many_rigs", f"at most {self._limit} rigs are kept", retry_after=60)
-        self._store.add_rig(rig.id, base=base.id, changes=changes)
+        if self._store.rig(rig.id):
+            if not passing:
+                self._store.keep_rig(rig.id)
+            return rig, False
+        self._make_room()
+        # A row says how its rig comes from a built-in one, so that none depends on another row.
+        before = self._store.rig(base.id)
+        root, all_changes = base.id, changes
+        if before is not None:
+            root, all_changes = before.base, merged_changes(before.changes, changes)
+        self._store.add_rig(rig.id, base=root, changes=all_changes, passing=passing)
         self._rigs.put(rig.id, rig)
         return rig, True
 
@@ -110,6 +129,13 @@ class Rigs:
         """Return another file that depends on its `key` alone."""
         return await self._file(hashlib.sha256(key.encode()).hexdigest()[:32], make)
 
+    def _make_room(self) -> None:
+        # A session's row is saved a second after it moved: what is younger may be in use.
+        ago = time.time() - _PASSING_SECONDS
+        if self._store.rig_count() >= self._limit and not self._store.remove_passing_rigs(ago):
+            message = f"at most {self._limit} rigs are kept; RISORIUS_MAX_RIGS allows more"
+            raise Busy("too_many_rigs", message, retry_after=60)
+
     async def _built_in(self, name: str) -> Rig:
         rig = await self._rigs.get(name, lambda: builtin_rig(name))
         self._names[rig.id] = name
@@ -129,8 +155,11 @@ class Rigs:
 
 def _derive(base: Rig, changes: Mapping[str, Any]) -> Rig:
     """Derive a rig from what a client sent, whatever its shape."""
+    given = {key: changes.get(key) for key in _CHANGES}
+    if isinstance(given["action_units"], Mapping):
+        given["action_units"] = {n: _unit(spec) for n, spec in given["action_units"].items()}
     try:
-        return base.derive(**{key: changes.get(key) for key in _CHANGES})
+        return base.derive(**given)
     except EngineError as error:
         raise refused_by_engine(error) from error
     except (TypeError, ValueError, KeyError, AttributeError, ArithmeticError, IndexError) as error:
@@ -138,6 +167,35 @@ def _derive(base: Rig, changes: Mapping[str, Any]) -> Rig:
         raise Unprocessable(
             "invalid_value", f"these changes cannot be applied to rig {base.id}: {error}"
         ) from error
+
+
+def _unit(spec: Any) -> Any:
+    """Return an action unit as the engine reads it; weights by muscle alone are one too."""
+    flat = isinstance(spec, Mapping) and spec and not _UNIT_FIELDS & set(spec)
+    return {"muscles": spec} if flat else spec
+
+
+def merged_changes(earlier: Mapping[str, Any], later: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the changes that come to the same as `earlier`, then `later`.
+
+    Tissue and muscles are changed field by field, action units and emotions as a whole.
+    """
+    merged = {**earlier, **later}
+    for kind in ("tissue", "muscles"):
+        if kind in earlier and kind in later:
+            merged[kind] = _merged_fields(earlier[kind], later[kind])
+    for kind in ("action_units", "emotions"):
+        if kind in earlier and kind in later:
+            merged[kind] = {**earlier[kind], **later[kind]}
+    return merged
+
+
+def _merged_fields(earlier: Mapping[str, Any], later: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(earlier)
+    for name, value in later.items():
+        both = isinstance(merged.get(name), Mapping) and isinstance(value, Mapping)
+        merged[name] = _merged_fields(merged[name], value) if both else value
+    return merged
 
 
 def _key(base: str, changes: Mapping[str, Any]) -> str:

@@ -37,7 +37,7 @@ class Table(DeclarativeBase):
 
 
 class RigRow(Table):
-    """A derived rig: the rig it came from and what was changed."""
+    """A derived rig: the built-in rig it came from and what was changed."""
 
     __tablename__ = "rigs"
 
@@ -45,6 +45,14 @@ class RigRow(Table):
     base: Mapped[str] = mapped_column(String(64))
     changes: Mapped[dict[str, Any]]
     created: Mapped[float] = mapped_column(Float)
+
+
+class PassingRigRow(Table):
+    """A derived rig that is a step of a live edit: nobody asked to keep it."""
+
+    __tablename__ = "passing_rigs"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
 
 
 class SessionRow(Table):
@@ -106,11 +114,46 @@ class Store:
 
     # Rigs.
 
-    def add_rig(self, rig: str, *, base: str, changes: Mapping[str, Any]) -> None:
+    def add_rig(
+        self, rig: str, *, base: str, changes: Mapping[str, Any], passing: bool = False
+    ) -> None:
         """Keep a derived rig; one that is there already stays."""
         with self._session.begin() as session:
             if session.get(RigRow, rig) is None:
                 session.add(RigRow(id=rig, base=base, changes=dict(changes), created=time.time()))
+                if passing:
+                    session.merge(PassingRigRow(id=rig))
+
+    def keep_rig(self, rig: str) -> None:
+        """Keep a rig for good, if it was a step of a live edit."""
+        with self._session.begin() as session:
+            session.execute(delete(PassingRigRow).where(PassingRigRow.id == rig))
+
+    def remove_passing_rigs(self, made_before: float) -> int:
+        """Forget the older steps of live edits that no session and no clip is on.
+
+        Args:
+            made_before: Later ones stay [s since 1970].
+
+        Returns:
+            How many there were.
+        """
+        used = select(SessionRow.rig).union(select(ClipRow.rig))
+        passing = select(PassingRigRow.id)
+        with self._session.begin() as session:
+            removed = session.scalars(
+                delete(RigRow)
+                .where(RigRow.id.in_(passing), RigRow.id.not_in(used))
+                .where(RigRow.created < made_before)
+                .returning(RigRow.id)
+            ).all()
+            session.execute(delete(PassingRigRow).where(PassingRigRow.id.in_(removed)))
+        return len(removed)
+
+    def rig_count(self) -> int:
+        """Return how many derived rigs are kept."""
+        with self._session() as session:
+            return session.scalar(select(func.count()).select_from(RigRow)) or 0
 
     def rig(self, rig: str) -> RigRow | None:
         """Return the derived rig of that id."""

@@ -113,6 +113,6 @@ async def _control(
 
 async def _edit(session: Session, changes: dict[str, Any], parts: Components) -> dict[str, Any]:
     async with session.editing:
-        rig, created = await parts.rigs.derive(session.rig, changes)
+        rig, created = await parts.rigs.derive(session.rig, changes, passing=True)
         tick = await parts.sessions.move(session, rig)
     return {"tick": tick, "rig": rig.id, "created": created}

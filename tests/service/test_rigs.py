@@ -5,9 +5,13 @@ from __future__ import annotations
 import json
 import struct
 import time
+from pathlib import Path
 
 import pytest
+from conftest import LOCAL, settings_in, until
 from starlette.testclient import TestClient
+
+from service.app import create_app
 
 
 def glb_json(data: bytes) -> dict[str, object]:
@@ -97,6 +101,18 @@ def test_the_same_changes_give_the_same_rig(client: TestClient) -> None:
     client.delete(f"/api/sessions/{session}")
 
 
+def test_a_custom_unit_is_weighted_muscles(client: TestClient) -> None:
+    weights = {"zygomatic_major.L": 0.5, "risorius": 0.25}
+    ids = []
+    for spec in (weights, {"muscles": weights}):
+        answer = client.post("/api/rigs", json={"action_units": {"AU90": spec}})
+        assert answer.status_code in (200, 201), answer.text
+        ids.append(answer.json()["id"])
+    assert ids[0] == ids[1]
+    unit = next(u for u in answer.json()["action_units"] if u["name"] == "AU90")
+    assert unit["muscles"] == weights
+
+
 @pytest.mark.parametrize(
     "changes",
     [
@@ -112,6 +128,7 @@ def test_the_same_changes_give_the_same_rig(client: TestClient) -> None:
         {"muscles": {"zygomatic_major.L": {"radius": 0.001}}},
         {"action_units": {"AU12": 5}},
         {"action_units": {"AU12": {"muscles": [1]}}},
+        {"action_units": {"AU12": {"biceps": 1}}},
         {"action_units": {"AU12": {"muscles": {"zygomatic_major": None}}}},
         {"emotions": {"odd": {"recipe": "12C", "synonyms": 5}}},
         {"emotions": {"odd": 7}},
@@ -154,3 +171,49 @@ def test_a_muscle_is_edited_under_a_live_face(client: TestClient, session: str) 
     unknown = client.patch(f"/api/sessions/{session}/muscles/biceps.L", json={"strength": 1})
     assert unknown.status_code == 404
     assert "zygomatic_major.L" in unknown.json()["known"]
+
+
+def edited(client: TestClient, session: str, strength: float) -> str:
+    path = f"/api/sessions/{session}/muscles/zygomatic_major.L"
+    answer = client.patch(path, json={"strength": strength})
+    assert answer.status_code == 200, answer.text
+    return str(answer.json()["rig"])
+
+
+def test_live_edits_never_use_up_the_rigs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.rigs._PASSING_SECONDS", 0.0)
+    with TestClient(create_app(settings_in(tmp_path, max_rigs=4)), base_url=LOCAL) as client:
+        kept = client.post("/api/rigs", json={"emotions": {"smirk": "R12C"}}).json()["id"]
+        session = client.post("/api/sessions", json={"rig": kept}).json()["id"]
+        for step in range(8):
+            rig = edited(client, session, 1.0 + step / 10)
+            wait_for_row(client, session, rig)
+        known = {line["id"] for line in client.get("/api/rigs").json()["rigs"]}
+        assert {kept, rig} <= known
+        assert len(known) <= 2 + 4
+        assert client.get(f"/api/sessions/{session}").json()["rig"] == rig
+
+
+def wait_for_row(client: TestClient, session: str, rig: str) -> None:
+    """Wait until the store knows that the session is on `rig`."""
+    store = client.app.state.parts.store  # type: ignore[attr-defined]
+    until(lambda: store.session(session).rig == rig)
+
+
+def test_a_chain_of_rigs_is_read_back_at_once(tmp_path: Path) -> None:
+    with TestClient(create_app(settings_in(tmp_path)), base_url=LOCAL) as client:
+        session = client.post("/api/sessions", json={}).json()["id"]
+        for layer in ("epidermis", "dermis"):
+            low = client.get("/api/rigs/standard").json()["tissue"]["stiffness_low"][layer]
+            body = {"stiffness_low": {layer: 0.9 * low}}
+            assert client.patch(f"/api/sessions/{session}/tissue", json=body).status_code == 200
+        for strength in (1.1, 1.2, 1.3):
+            last = edited(client, session, strength)
+        child = client.post("/api/rigs", json={"base": last, "emotions": {"smirk": "R12C"}}).json()
+    with TestClient(create_app(settings_in(tmp_path)), base_url=LOCAL) as client:
+        rigs = {line["id"]: line for line in client.get("/api/rigs").json()["rigs"]}
+        standard = client.get("/api/rigs/standard").json()["id"]
+        assert {rigs[last]["base"], rigs[child["id"]]["base"]} == {standard}
+        again = client.get(f"/api/rigs/{child['id']}").json()
+        assert again == child
+        assert client.get(f"/api/sessions/{session}").json()["rig"] == last
