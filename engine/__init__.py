@@ -22,6 +22,7 @@ from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_
 from .jaw import JawHinge
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import measure_units
+from .mixing import hold_units, unit_key
 from .quality import judge
 from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig
 from .simulator import FaceState, Simulator
@@ -61,6 +62,7 @@ __all__ = [
     "clip_to_glb",
     "face_to_glb",
     "format_facs",
+    "hold_units",
     "judge",
     "landmarks_68",
     "measure_units",
@@ -71,4 +73,5 @@ __all__ = [
     "settled_units",
     "surface_to_glb",
     "targets_to_glb",
+    "unit_key",
 ]

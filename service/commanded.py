@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from engine import LAYERS, Keyframe, Rig, Timeline
+from engine import LAYERS, Keyframe, Rig, Timeline, hold_units, unit_key
 
 
 @dataclass
@@ -46,13 +46,11 @@ class _Layer:
     expires: float | None = None
     fade_out: float = 0.0
 
-    def apply(self, keyframe: Keyframe, recipe: Mapping[str, float] | None) -> None:
-        if recipe is not None:
-            self.units = dict(recipe)
-        elif keyframe.replace:
+    def apply(self, keyframe: Keyframe, recipe: Mapping[str, float] | None, rig: Rig) -> None:
+        if keyframe.replace or recipe is not None:
             self.units = {}
-        named = {**self.units, **keyframe.action_units}
-        self.units = {key: value for key, value in named.items() if value > 0.0}
+        hold_units(rig, self.units, recipe or {})
+        hold_units(rig, self.units, keyframe.action_units)
         self.weight = keyframe.weight
         self.expires = None
         if keyframe.hold is not None:
@@ -81,12 +79,15 @@ def commanded_units(
 ) -> tuple[list[str], npt.NDArray[np.float64]]:
     """Return names, and intensities 0..1 at `times` [s, rising], shape (times, names).
 
-    Every unit of the rig has a column, and so has every single side, `L12`, that is commanded.
+    Every unit of the rig has a column, and both sides of one, `L12` and `R12`, of which a side is
+    commanded.
     """
     recipes = [_recipe(keyframe, rig) for keyframe in timeline.keyframes]
-    sided = {key for keyframe in timeline.keyframes for key in keyframe.action_units}
-    sided |= {key for recipe in recipes for key in recipe or ()}
-    names = [*rig.action_units, *sorted(sided - set(rig.action_units))]
+    keys = {key for keyframe in timeline.keyframes for key in keyframe.action_units}
+    keys |= {key for recipe in recipes for key in recipe or ()}
+    asked = [rig.resolve_unit(key) for key in sorted(keys)]
+    sided = {unit_key(unit.name, each) for unit, side in asked if side for each in "LR"}
+    names = [*rig.action_units, *sorted(sided)]
     layers = {layer: _Layer() for layer in LAYERS}
     coming = list(zip(timeline.keyframes, recipes, strict=True))
     rows = np.zeros((len(times), len(names)))
@@ -94,7 +95,7 @@ def commanded_units(
         while coming and coming[0][0].time <= time:
             keyframe, recipe = coming.pop(0)
             layers[keyframe.layer].let_go(keyframe.time)
-            layers[keyframe.layer].apply(keyframe, recipe)
+            layers[keyframe.layer].apply(keyframe, recipe, rig)
         for layer in layers.values():
             layer.let_go(time)
             for column, name in enumerate(names):

@@ -49,3 +49,17 @@ def test_an_emotion_is_its_recipe(rig: Rig) -> None:
     terms = {term.key: term.intensity for term in rig.resolve_emotion("happiness").terms}
     for key, intensity in terms.items():
         assert column(rig, key, [0], joy) == [round(0.5 * intensity, 6)]
+
+
+def test_one_side_of_a_unit_that_is_held_on_both_parts_them(rig: Rig) -> None:
+    timeline = Timeline(
+        (
+            Keyframe(time=0.0, action_units={"AU12": 0.8}),
+            Keyframe(time=1.0, action_units={"L12": 0.2}),
+            Keyframe(time=2.0, action_units={"au12": 0.5}),
+        ),
+        3.0,
+    )
+    names, rows = commanded_units(timeline, rig, [0.5, 1.5, 2.5])
+    shown = [{n: v for n, v in zip(names, row, strict=True) if v} for row in rows]
+    assert shown == [{"AU12": 0.8}, {"L12": 0.2, "R12": 0.8}, {"AU12": 0.5}]
