@@ -96,13 +96,22 @@ def tile(pictures: Sequence[tuple[str, bytes]], *, columns: int, size: int) -> I
     rows = -(-len(pictures) // columns)
     sheet = Image.new("RGB", (columns * size, rows * (size + label_height)), _BACKGROUND)
     draw = ImageDraw.Draw(sheet)
-    font = ImageFont.load_default(size=round(label_height * 0.7))
+    largest = round(label_height * 0.55)
     for index, (label, png) in enumerate(pictures):
         left, top = index % columns * size, index // columns * (size + label_height)
         sheet.paste(Image.open(io.BytesIO(png)).convert("RGB").resize((size, size)), (left, top))
         middle = (left + size / 2, top + size + label_height / 2)
-        draw.text(middle, label, fill=_INK, font=font, anchor="mm")
+        draw.text(middle, label, fill=_INK, font=_fitting(label, largest, size), anchor="mm")
     return sheet
+
+
+def _fitting(label: str, largest: int, width: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """Return the greatest font, up to `largest`, in which `label` keeps within `width`, pixels."""
+    for size in range(largest, 6, -1):
+        font = ImageFont.load_default(size=size)
+        if font.getlength(label) <= 0.94 * width:
+            return font
+    return ImageFont.load_default(size=6)
 
 
 def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:

@@ -6,7 +6,7 @@ import io
 
 from PIL import Image
 
-from service.sheet import poses_of, tile
+from service.sheet import _fitting, poses_of, tile
 
 RIG = {
     "action_units": [{"name": "AU1", "title": "Inner brow raiser"}],
@@ -44,3 +44,9 @@ def test_pictures_are_laid_out_in_rows() -> None:
 
 def test_few_pictures_make_a_narrow_sheet() -> None:
     assert tile([("one", png((1, 2, 3)))], columns=8, size=64).width == 64
+
+
+def test_a_long_label_is_set_smaller_and_not_cut() -> None:
+    short, long = _fitting("rest", 40, 300), _fitting("fear 1E+2C+4C+5E+20D+25C+26A", 40, 300)
+    assert short.getlength("rest") > long.getlength("rest")
+    assert long.getlength("fear 1E+2C+4C+5E+20D+25C+26A") <= 300
