@@ -12,10 +12,10 @@ from fastapi import Depends, Request
 from engine import Model, Timeline
 
 from .clips import Clips
+from .embedded import EmbeddedRunner
 from .guard import RateLimit
 from .metrics import Metrics
 from .rigs import Rigs
-from .runner import EmbeddedRunner
 from .sessions import Sessions
 from .settings import Settings
 from .store import Store

@@ -1,35 +1,19 @@
-"""The runner: where simulators live, and how the rest of the service reaches them.
+"""The runner: how the rest of the service reaches simulators, wherever they live.
 
-`Runner` is the seam for several machines: only plain, frozen data crosses it. `EmbeddedRunner`
-keeps everything in this process: one simulation thread owns every `Simulator` and steps them at a
-fixed 60 Hz; rendering has its own bounded pool, so that batch work never queues ahead of live
-ticks.
+It is the seam for several machines: only plain, frozen data crosses it. `EmbeddedRunner` keeps
+everything in this process.
 """
 
 from __future__ import annotations
 
-import asyncio
-import math
-import queue
-import threading
-import time
-from collections.abc import AsyncIterator, Callable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
-from typing import Protocol, TypeVar
+from collections.abc import AsyncIterator, Callable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
 
-import structlog
-
-from engine import Clip, Frame, Keyframe, Model, Rig, Simulator, Timeline, record
-
-from .errors import NotFound
+from engine import Clip, Frame, Keyframe, Model, Rig, Timeline
 
 Progress = Callable[[float], None]
 Cancelled = Callable[[], bool]
-Answer = TypeVar("Answer")
-
-_LOG = structlog.get_logger("runner")
-_TICK_SECONDS = 1.0 / Simulator.TICKS_PER_SECOND
 
 
 @dataclass(frozen=True)
@@ -67,13 +51,28 @@ class Runner(Protocol):
         """Make a face and apply the keyframes of `timeline`, whose times do not count."""
 
     async def apply(self, session: str, command: Keyframe | Move) -> int:
-        """Put a command in the mailbox; return the tick at which it takes effect."""
+        """Put a command in the mailbox; return the tick at which it takes effect.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped.
+        """
 
     async def close(self, session: str) -> None:
-        """Forget the face."""
+        """Forget the face.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped.
+        """
 
     async def view(self, session: str) -> View:
-        """Return the face as it stands."""
+        """Return the face as it stands.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped.
+        """
 
     def ticks(self) -> AsyncIterator[Tick]:
         """Yield what moved, in batches; a slow reader gets fewer, newer frames."""
@@ -89,350 +88,3 @@ class Runner(Protocol):
         cancelled: Cancelled | None = None,
     ) -> Clip:
         """Play a finished timeline in a simulator of its own."""
-
-
-@dataclass
-class Counters:
-    """What the simulation thread counts.
-
-    Attributes:
-        ticks: Ticks stepped.
-        overruns: Ticks that were late; the faces slow down instead of skipping.
-        resets: Faces put back to rest because their numbers ran away.
-        busy_seconds: Time spent stepping.
-        awake: Faces stepped in the last tick.
-        last_tick_seconds: Time the last tick took.
-    """
-
-    ticks: int = 0
-    overruns: int = 0
-    resets: int = 0
-    busy_seconds: float = 0.0
-    awake: int = 0
-    last_tick_seconds: float = 0.0
-
-
-@dataclass(eq=False)
-class _Group:
-    """One simulator and which of its faces may move.
-
-    Attributes:
-        rig: Of all its faces.
-        model: Of all its faces.
-        simulator: Owned by the simulation thread.
-        awake: Faces that were not asleep after the last tick.
-        waiting: Faces, asleep or not, whose command lets go by itself: ticks until then.
-    """
-
-    rig: Rig
-    model: Model
-    simulator: Simulator
-    awake: set[str] = field(default_factory=set)
-    waiting: dict[str, int] = field(default_factory=dict)
-
-    @property
-    def runs(self) -> bool:
-        """Whether its time goes on."""
-        return bool(self.awake or self.waiting)
-
-    def step(self) -> dict[str, Frame]:
-        """Advance one tick and return the frames of the faces that moved."""
-        frames = self.simulator.step()
-        self.awake = {face for face, frame in frames.items() if not frame.asleep}
-        self.waiting = {face: left - 1 for face, left in self.waiting.items() if left > 0}
-        return frames
-
-    def forget(self, face: str) -> None:
-        """Take a face off the lists."""
-        self.awake.discard(face)
-        self.waiting.pop(face, None)
-
-
-class EmbeddedRunner:
-    """Every face in this process, on one simulation thread."""
-
-    def __init__(self, *, simulation_threads: int = 1, render_threads: int = 1) -> None:
-        self.counters = Counters()
-        self._threads = simulation_threads
-        self._mailbox: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
-        self._groups: list[_Group] = []
-        self._home: dict[str, _Group] = {}
-        self._pending: dict[str, Frame] = {}
-        self._pending_resets: set[str] = set()
-        self._lock = threading.Lock()
-        self._wake_reader: Callable[[], None] = _nothing
-        self._render_pool = ThreadPoolExecutor(render_threads, thread_name_prefix="render")
-        self._build_pool = ThreadPoolExecutor(1, thread_name_prefix="build")
-        self._step_pool = ThreadPoolExecutor(simulation_threads, thread_name_prefix="step")
-        self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
-
-    def start(self) -> None:
-        """Start the simulation thread."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Stop every thread; renderings that run are waited for, so cancel them first."""
-        self._mailbox.put(None)
-        if self._thread.is_alive():
-            self._thread.join()
-        for pool in (self._render_pool, self._build_pool, self._step_pool):
-            pool.shutdown(wait=True, cancel_futures=True)
-
-    @property
-    def alive(self) -> bool:
-        """Whether the simulation thread runs."""
-        return self._thread.is_alive()
-
-    # The verbs, on the event loop's thread.
-
-    async def open(self, session: str, rig: Rig, timeline: Timeline, model: Model) -> None:
-        """Make a face and apply the keyframes of `timeline`, whose times do not count."""
-        spare = await self._spare(rig, model)
-        await self._ask(lambda: self._open(session, rig, model, timeline.keyframes, spare))
-
-    async def apply(self, session: str, command: Keyframe | Move) -> int:
-        """Put a command in the mailbox; return the tick at which it takes effect."""
-        if isinstance(command, Keyframe):
-            return await self._ask(lambda: self._apply(session, command))
-        model = (await self._ask(lambda: self._group(session))).model
-        spare = await self._spare(command.rig, model)
-        return await self._ask(lambda: self._move(session, command.rig, spare))
-
-    async def close(self, session: str) -> None:
-        """Forget the face."""
-        await self._ask(lambda: self._close(session))
-
-    async def view(self, session: str) -> View:
-        """Return the face as it stands."""
-        return await self._ask(lambda: self._view(session))
-
-    async def ticks(self) -> AsyncIterator[Tick]:
-        """Yield what moved, in batches; a slow reader gets fewer, newer frames."""
-        loop = asyncio.get_running_loop()
-        news = asyncio.Event()
-
-        def wake() -> None:
-            loop.call_soon_threadsafe(news.set)
-
-        self._wake_reader = wake
-        try:
-            while True:
-                await news.wait()
-                news.clear()
-                with self._lock:
-                    frames, self._pending = self._pending, {}
-                    reset, self._pending_resets = frozenset(self._pending_resets), set()
-                yield Tick(frames, reset)
-        finally:
-            self._wake_reader = _nothing
-
-    async def render(
-        self,
-        rig: Rig,
-        timeline: Timeline,
-        fps: int,
-        *,
-        model: Model | None = None,
-        progress: Progress | None = None,
-        cancelled: Cancelled | None = None,
-    ) -> Clip:
-        """Play a finished timeline in a simulator of its own, in the pool for rendering."""
-        return await asyncio.get_running_loop().run_in_executor(
-            self._render_pool,
-            lambda: record(
-                rig, timeline, fps=fps, model=model, progress=progress, cancelled=cancelled
-            ),
-        )
-
-    async def _ask(self, question: Callable[[], Answer]) -> Answer:
-        """Have the simulation thread answer between two ticks."""
-        future: Future[Answer] = Future()
-
-        def answer() -> None:
-            if not future.set_running_or_notify_cancel():
-                return
-            try:
-                future.set_result(question())
-            except Exception as error:
-                future.set_exception(error)
-
-        self._mailbox.put(answer)
-        return await asyncio.wrap_future(future)
-
-    async def _spare(self, rig: Rig, model: Model) -> Simulator | None:
-        """Build a simulator beside the simulation thread when there is none of that kind."""
-        if self._room(rig, model) is not None:
-            return None
-        loop = asyncio.get_running_loop()
-        return await loop.run_in_executor(self._build_pool, lambda: self._simulator(rig, model))
-
-    def _room(self, rig: Rig, model: Model) -> _Group | None:
-        """Return the group that a new face of `rig` joins, if there is one."""
-        for group in list(self._groups):
-            if group.rig.id == rig.id and group.model == model:
-                return group
-        return None
-
-    def _simulator(self, rig: Rig, model: Model) -> Simulator:
-        return Simulator(rig, model=model, threads=self._threads)
-
-    # What the simulation thread does.
-
-    def _run(self) -> None:
-        due = time.perf_counter()
-        while self._empty_mailbox(block=not self._awake()):
-            if not self._awake():
-                due = time.perf_counter() + _TICK_SECONDS
-                continue
-            started = time.perf_counter()
-            self._step()
-            now = time.perf_counter()
-            self._count(now - started)
-            if now < due:
-                time.sleep(due - now)
-                due += _TICK_SECONDS
-            else:
-                self.counters.overruns += now - due > _TICK_SECONDS / 2
-                due = now + _TICK_SECONDS
-
-    def _awake(self) -> bool:
-        return any(group.runs for group in self._groups)
-
-    def _empty_mailbox(self, *, block: bool) -> bool:
-        """Answer everything asked so far; with `block`, wait for a first question."""
-        while True:
-            try:
-                answer = self._mailbox.get(block=block)
-            except queue.Empty:
-                return True
-            if answer is None:
-                return False
-            answer()
-            block = False
-
-    def _step(self) -> None:
-        """Step every simulator that has a face awake, several at once when there are several."""
-        moving = [group for group in self._groups if group.runs]
-        if len(moving) == 1:
-            results = [self._step_group(moving[0])]
-        else:
-            results = list(self._step_pool.map(self._step_group, moving))
-        self.counters.awake = sum(len(group.awake) for group in moving)
-        frames = {face: frame for result in results for face, frame in result.items()}
-        if frames:
-            self._publish(frames)
-
-    def _step_group(self, group: _Group) -> dict[str, Frame]:
-        try:
-            frames = group.step()
-        except Exception:
-            _LOG.exception("a simulator failed; its faces go back to rest", rig=group.rig.id)
-            return self._restart(group)
-        diverged = {face for face, frame in frames.items() if frame.diverged}
-        if diverged:
-            _LOG.warning("faces diverged and are back at rest", sessions=sorted(diverged))
-            self._report_reset(diverged)
-        return frames
-
-    def _restart(self, group: _Group) -> dict[str, Frame]:
-        """Replace a simulator that raised by a new one with the same faces at rest."""
-        faces = group.simulator.faces
-        group.simulator = self._simulator(group.rig, group.model)
-        group.awake.clear()
-        group.waiting.clear()
-        for face in faces:
-            group.simulator.add(face)
-        self._report_reset(set(faces))
-        return {face: group.simulator.frame(face) for face in faces}
-
-    def _report_reset(self, faces: set[str]) -> None:
-        self.counters.resets += len(faces)
-        with self._lock:
-            self._pending_resets |= faces
-
-    def _publish(self, frames: Mapping[str, Frame]) -> None:
-        with self._lock:
-            self._pending.update(frames)
-        self._wake_reader()
-
-    def _count(self, seconds: float) -> None:
-        counters = self.counters
-        counters.ticks += 1
-        counters.busy_seconds += seconds
-        counters.last_tick_seconds = seconds
-
-    def _group(self, session: str) -> _Group:
-        group = self._home.get(session)
-        if group is None:
-            raise NotFound("unknown_session", f"there is no session {session!r}")
-        return group
-
-    def _open(
-        self,
-        session: str,
-        rig: Rig,
-        model: Model,
-        keyframes: Sequence[Keyframe],
-        spare: Simulator | None,
-    ) -> None:
-        group = self._join(rig, model, spare)
-        group.simulator.add(session)
-        self._home[session] = group
-        for keyframe in keyframes:
-            self._apply(session, keyframe)
-        self._wake(session, group)
-
-    def _join(self, rig: Rig, model: Model, spare: Simulator | None) -> _Group:
-        group = self._room(rig, model)
-        if group is None:
-            group = _Group(rig, model, spare or self._simulator(rig, model))
-            self._groups.append(group)
-        return group
-
-    def _wake(self, session: str, group: _Group) -> None:
-        group.awake.add(session)
-        self._publish({session: group.simulator.frame(session)})
-
-    def _apply(self, session: str, keyframe: Keyframe) -> int:
-        group = self._group(session)
-        tick = group.simulator.apply(session, keyframe)
-        group.awake.add(session)
-        if keyframe.hold is not None:
-            left = math.ceil((keyframe.fade + keyframe.hold) * Simulator.TICKS_PER_SECOND) + 2
-            group.waiting[session] = max(left, group.waiting.get(session, 0))
-        return tick
-
-    def _move(self, session: str, rig: Rig, spare: Simulator | None) -> int:
-        old = self._group(session)
-        new = self._join(rig, old.model, spare)
-        if new is old:
-            return old.simulator.frame(session).tick
-        new.simulator.add(session, state=old.simulator.remove(session))
-        if session in old.waiting:
-            new.waiting[session] = old.waiting[session]
-        self._leave(session, old)
-        self._home[session] = new
-        self._wake(session, new)
-        return new.simulator.frame(session).tick
-
-    def _close(self, session: str) -> None:
-        group = self._group(session)
-        group.simulator.remove(session)
-        del self._home[session]
-        self._leave(session, group)
-        with self._lock:
-            self._pending.pop(session, None)
-
-    def _leave(self, session: str, group: _Group) -> None:
-        """Drop a simulator that has no faces left."""
-        group.forget(session)
-        if not group.simulator.faces:
-            self._groups.remove(group)
-
-    def _view(self, session: str) -> View:
-        simulator = self._group(session).simulator
-        return View(simulator.frame(session), simulator.report(session))
-
-
-def _nothing() -> None:
-    """Wake nobody: no reader has come yet."""

@@ -28,9 +28,11 @@ async def health() -> Health:
 
 @router.get("/api/ready")
 async def ready(parts: Parts) -> Health:
-    """Answer 200 once kernels are warm and the standard rig is built."""
+    """Answer 200 once kernels are warm and the standard rig is built, while faces can move."""
     if not parts.ready.is_set():
         raise Busy("not_ready", f"the service is {parts.stage}")
+    if not parts.runner.alive:
+        raise Busy("simulation_stopped", "the simulation has stopped; restart the service")
     return Health(status="ready", version=version())
 
 

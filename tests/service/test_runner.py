@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from engine import Frame, Keyframe, Model, Rig, Simulator, Timeline, builtin_rig
-from service.errors import NotFound
-from service.runner import EmbeddedRunner, Move, Runner
+from service.embedded import EmbeddedRunner
+from service.errors import Busy, NotFound
+from service.runner import Move, Runner
 
 NOTHING = Timeline((), 1.0)
 SMILE = Keyframe(action_units={"AU12": 1.0}, fade=0.1)
@@ -159,6 +160,36 @@ async def a_simulator_that_raises_ends_nothing(runner: Runner, rig: Rig) -> None
     await frames_until(runner, "a", lambda f: bool(np.abs(f.displacements).max() > 3))
 
 
+async def a_simulation_that_ended_is_said(runner: Runner, rig: Rig) -> None:
+    await runner.open("a", rig, NOTHING, Model.for_rig(rig))
+    runner._step = None  # type: ignore[attr-defined]
+    asked = [asyncio.create_task(runner.view("a")) for _ in range(3)]
+    await asyncio.gather(*asked, return_exceptions=True)
+    await asyncio.to_thread(runner._thread.join)  # type: ignore[attr-defined]
+    for question in (runner.view("a"), runner.apply("a", SMILE), runner.close("a")):
+        with pytest.raises(Busy, match="log says why"):
+            await question
+
+
+async def what_is_asked_while_it_stops_is_answered(runner: Runner, rig: Rig) -> None:
+    await runner.open("a", rig, NOTHING, Model.for_rig(rig))
+    runner._mailbox.stop()  # type: ignore[attr-defined]
+    late = [asyncio.create_task(runner.view("a")) for _ in range(3)]
+    results = await asyncio.gather(*late, return_exceptions=True)
+    assert all(isinstance(result, Busy) for result in results)
+
+
+async def a_view_names_the_writers(runner: Runner, rig: Rig) -> None:
+    await runner.open("a", rig, NOTHING, Model.for_rig(rig))
+    await runner.apply("a", Keyframe(layer="emotion", emotion=("happiness", 0.5)))
+    await runner.apply("a", Keyframe(action_units={"AU12": 1.0}, jaw={"pitch": 5.0}))
+    merged = (await runner.view("a")).report["merged"]
+    writers = merged["writers"]  # type: ignore[index]
+    assert writers["AU12"] == ["emotion", "puppet"]
+    assert writers["AU6"] == ["emotion"]
+    assert writers["jaw.pitch"] == ["puppet"]
+
+
 async def rendering_is_reported_and_can_be_stopped(runner: Runner, rig: Rig) -> None:
     shares: list[float] = []
     clip = await runner.render(rig, Timeline((SMILE,), 0.2), 30, progress=shares.append)
@@ -186,5 +217,8 @@ test_faces_do_not_know_each_other = contract(faces_of_one_rig_do_not_know_each_o
 test_a_closed_face_is_gone = contract(a_closed_face_is_gone)
 test_a_face_that_diverges_is_reported = contract(a_face_that_diverges_is_reported)
 test_a_simulator_that_raises_ends_nothing = contract(a_simulator_that_raises_ends_nothing)
+test_a_simulation_that_ended_is_said = contract(a_simulation_that_ended_is_said)
+test_what_is_asked_late_is_answered = contract(what_is_asked_while_it_stops_is_answered)
+test_a_view_names_the_writers = contract(a_view_names_the_writers)
 test_rendering_can_be_stopped = contract(rendering_is_reported_and_can_be_stopped)
 test_rendering_does_not_stop_live_faces = contract(rendering_does_not_stop_live_faces)

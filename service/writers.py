@@ -1,0 +1,37 @@
+"""Who moves what: for each thing that the layers of a face hold, the layers that hold it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+_NAMED = ("action_units", "muscles")
+_POSED = ("jaw", "gaze", "head")
+
+
+def with_writers(report: Mapping[str, object]) -> dict[str, object]:
+    """Return a face's report with `writers` beside what its layers make together."""
+    layers, merged = report["layers"], report["merged"]
+    assert isinstance(layers, Mapping)
+    assert isinstance(merged, Mapping)
+    return {**report, "merged": {**merged, "writers": writers(layers)}}
+
+
+def writers(layers: Mapping[str, Mapping[str, object]]) -> dict[str, list[str]]:
+    """Return the layers, from the lowest, that hold each thing.
+
+    Things are named as commands name them: "AU12", "L12", "zygomatic_major.L", "jaw.pitch".
+    """
+    found: dict[str, list[str]] = {}
+    for layer, held in layers.items():
+        for name in _names(held):
+            found.setdefault(name, []).append(layer)
+    return found
+
+
+def _names(held: Mapping[str, object]) -> list[str]:
+    names: list[str] = []
+    for group in (*_NAMED, *_POSED):
+        things = held.get(group, {})
+        assert isinstance(things, Mapping)
+        names += [f"{group}.{name}" if group in _POSED else str(name) for name in things]
+    return names
