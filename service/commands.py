@@ -16,7 +16,9 @@ from engine import (
     Timeline,
     blend,
     format_facs,
+    hold_units,
     parse_facs,
+    unit_key,
 )
 
 from .bodies import (
@@ -118,22 +120,21 @@ def model_of(choice: ModelChoice, rig: Rig) -> Model:
     return Model.for_rig(rig, **choice.model_dump(exclude_unset=True))
 
 
-def hold(held: dict[str, Keyframe], keyframe: Keyframe) -> None:
+def hold(held: dict[str, Keyframe], keyframe: Keyframe, rig: Rig) -> None:
     """Take `keyframe` into `held`: for each layer one keyframe with all that it holds.
 
-    A command that lets go by itself leaves nothing.
+    A command that lets go by itself takes the whole layer with it, and so leaves nothing.
     """
     before = held.get(keyframe.layer)
     if keyframe.hold is not None:
-        if keyframe.replace:
-            held.pop(keyframe.layer, None)
+        held.pop(keyframe.layer, None)
         return
     if before is None or keyframe.replace:
         before = Keyframe(layer=keyframe.layer)
     units = {} if keyframe.emotion is not None else before.action_units
     held[keyframe.layer] = replace(
         keyframe,
-        action_units={**units, **keyframe.action_units},
+        action_units=_held_units(units, keyframe.action_units, rig),
         muscles={**before.muscles, **keyframe.muscles},
         jaw={**before.jaw, **keyframe.jaw},
         gaze={**before.gaze, **keyframe.gaze},
@@ -142,6 +143,16 @@ def hold(held: dict[str, Keyframe], keyframe: Keyframe) -> None:
         fade=0.0,
         replace=False,
     )
+
+
+def _held_units(
+    before: Mapping[str, float], named: Mapping[str, float], rig: Rig
+) -> dict[str, float]:
+    """Return the units a layer holds; a unit at 0 is kept, for it lets go of an emotion's."""
+    units = dict(before)
+    hold_units(rig, units, named)
+    let_go = (rig.resolve_unit(key) for key, value in named.items() if value == 0.0)
+    return units | {unit_key(unit.name, side): 0.0 for unit, side in let_go}
 
 
 def held_to_json(held: Mapping[str, Keyframe]) -> list[Any]:

@@ -236,7 +236,7 @@ class Sessions:
         except EngineError as error:
             raise refused_by_engine(error) from error
         session.commands.append(Command(tick, keyframe))
-        hold(session.held, keyframe)
+        hold(session.held, keyframe, session.rig)
         session.unsaved = session.state_changed = True
         return tick, warnings
 
@@ -353,7 +353,7 @@ class Sessions:
         session = Session(row.id, rig, model, row.created, time.time(), view.frame)
         for keyframe in timeline.keyframes:
             session.commands.append(Command(view.frame.tick, keyframe))
-            hold(session.held, keyframe)
+            hold(session.held, keyframe, session.rig)
         self._live[row.id] = session
         return session
 
