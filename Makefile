@@ -30,7 +30,9 @@ measure: $(STAMPS)/python
 	$(BIN)/risorius measure
 
 sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
-	$(BIN)/risorius sheet -o docs/expressions.png
+	$(BIN)/risorius sheet -o docs/expressions.png --view front --size 280
+	$(BIN)/risorius sheet -o docs/emotions.png --view front --size 400 --columns 3 \
+		--only happiness,sadness,fear,anger,surprise,disgust
 
 # Chromium for the browser test: the system's, else Debian's, else Playwright's own.
 chromium: $(STAMPS)/python-dev

@@ -17,12 +17,16 @@ from .server import running
 from .settings import Settings
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import FloatRect, Page
 
 Show = Callable[[str, float], None]
 VIEWS = ("front", "three-quarter", "profile")
 _TIMEOUT_MS = 60_000
 _LABEL_SHARE = 0.09
+_ROOM = 1.34
+"""Side of the page against a picture's: the page frames the whole head, a picture its face."""
+_ABOVE = 0.12
+"""Share of the page above a picture: the hair."""
 _BACKGROUND = (24, 25, 28)
 _INK = (226, 226, 222)
 _SETTLED = "t => window.__viewer.ready && window.__viewer.asleep && window.__viewer.tick > t"
@@ -81,7 +85,8 @@ def draw_sheet(
         settings = Settings(data_dir=Path(folder), host="127.0.0.1", api_keys=())
         try:
             with running(create_app(settings), settings) as url, chromium() as browser:
-                page = browser.new_page(viewport={"width": size, "height": size})
+                side = round(size * _ROOM)
+                page = browser.new_page(viewport={"width": side, "height": side})
                 pictures = _photograph(page, url, rig=rig, view=view, only=only, show=show)
         except NoBrowser as error:
             raise SheetRefused(str(error)) from error
@@ -152,8 +157,15 @@ def _photograph(
         tick = _command(page, f"{url}/api/sessions/{session}", pose)
         page.wait_for_function(_SETTLED, arg=tick)
         page.evaluate("() => window.__viewer.render()")
-        pictures.append((pose.label, page.screenshot()))
+        pictures.append((pose.label, page.screenshot(clip=_face_of(page))))
     return pictures
+
+
+def _face_of(page: Page) -> FloatRect:
+    """Return the part of the page that shows the face, from hairline to chin, pixels."""
+    side = float((page.viewport_size or {"width": 0})["width"])
+    shown = side / _ROOM
+    return {"x": (side - shown) / 2.0, "y": _ABOVE * side, "width": shown, "height": shown}
 
 
 def _command(page: Page, session: str, pose: Pose) -> int:
