@@ -28,6 +28,7 @@ from .bodies import (
     ModelChoice,
     NewClip,
 )
+from .clashes import clashes
 from .errors import Unprocessable, refused_by_engine
 
 # FACS' own bands of the intensity scale are uneven: trace, slight, marked, severe, maximum.
@@ -103,7 +104,8 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
     for index, body in enumerate(clip.timeline):
         try:
             keyframe = _clip_keyframe(body, rig)
-            warnings += [f"keyframe {index}: {warning}" for warning in rig.check(keyframe)]
+            found = rig.check(keyframe) + clashes(body, keyframe, rig)
+            warnings += [f"keyframe {index}: {warning}" for warning in found]
         except EngineError as error:
             refused = refused_by_engine(error)
             refused.message = f"keyframe {index}: {refused.message}"

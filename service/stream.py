@@ -13,9 +13,11 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocketDisconnect
 
 from .bodies import MESSAGE, AckMessage, ControlsMessage, explain
+from .clashes import clashes
 from .commands import controls_keyframe, play_emotion
 from .components import Components
 from .errors import Refused, error_body, json_response
+from .guard import KEY_SUBPROTOCOL
 from .protocol import SUBPROTOCOL
 from .sessions import Session
 from .viewers import Viewer
@@ -29,7 +31,7 @@ _TOO_BIG = 1009
 async def stream(socket: WebSocket, session_id: str) -> None:
     """Send the session's frames and events; take commands."""
     parts: Components = socket.app.state.parts
-    offered = [name for name in socket.scope["subprotocols"] if "key" not in name]
+    offered = [n for n in socket.scope["subprotocols"] if not n.startswith(KEY_SUBPROTOCOL)]
     if offered and SUBPROTOCOL not in offered:
         # The handshake is completed in the client's own version, so that it can read the reason.
         await socket.accept(subprotocol=offered[0])
@@ -116,6 +118,8 @@ async def _obey(
         else:
             keyframe = play_emotion(message, session.rig).keyframe
         _, warnings = await parts.sessions.apply(session, keyframe)
+        if isinstance(message, ControlsMessage):
+            warnings += clashes(message, keyframe, session.rig)
         for warning in warnings:
             viewer.offer({"type": "warning", "message": warning})
     except (ValidationError, UnicodeEncodeError) as error:

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Response
 from engine import UnknownName, face_to_glb
 
 from ..bodies import Changes, Controls, EmotionCommand, NewSession
+from ..clashes import clashes
 from ..commands import controls_keyframe, model_of, play_emotion
 from ..components import Components, Parts
 from ..errors import refused_by_engine
@@ -108,7 +109,7 @@ async def _control(
     session = await parts.sessions.get(session_id)
     keyframe = controls_keyframe(body, replace=replace)
     tick, warnings = await parts.sessions.apply(session, keyframe)
-    return {"tick": tick, "warnings": warnings}
+    return {"tick": tick, "warnings": warnings + clashes(body, keyframe, session.rig)}
 
 
 async def _edit(session: Session, changes: dict[str, Any], parts: Components) -> dict[str, Any]:

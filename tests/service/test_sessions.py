@@ -92,6 +92,37 @@ def test_the_tick_is_that_of_the_next_step(client: TestClient, session: str) -> 
     assert second["warnings"] == []
 
 
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ({"facs": "12C+12D"}, "AU12 is named twice in facs"),
+        ({"facs": "12C", "action_units": {"AU12": 0.8}}, "AU12 is named in facs and in action_un"),
+        ({"action_units": {"AU12": 0.8, "12": 0.2}}, "AU12 is named twice in action_units"),
+        ({"action_units": {"AU12": 0.8, "L12": 0.2}}, "AU12 and L12 are both named"),
+        ({"facs": "26C", "jaw": {"pitch": 5}}, "jaw.pitch is named itself, so AU26"),
+        (
+            {"facs": "L12C", "muscles": {"zygomatic_major.L": 0.2}},
+            "zygomatic_major.L is named itself, so L12",
+        ),
+    ],
+)
+def test_clashing_units_are_named(
+    client: TestClient, session: str, body: dict[str, object], said: str
+) -> None:
+    warnings = control(client, session, **body)["warnings"]
+    assert [warning for warning in warnings if warning.startswith(said)], warnings
+    clip = {"timeline": [{"time": 0.0, **body}], "duration": 0.1}
+    row = client.post("/api/clips", json=clip).json()
+    until(lambda: client.get(f"/api/clips/{row['id']}").json()["status"] == "done")
+    report = client.get(f"/api/clips/{row['id']}").json()["report"]
+    assert [line for line in report["warnings"] if said in line]
+
+
+def test_units_that_do_not_clash_are_not_warned_of(client: TestClient, session: str) -> None:
+    body = {"facs": "1C+L12D+R12B+26", "jaw": {"yaw": 2}, "muscles": {"risorius.L": 0.2}}
+    assert control(client, session, **body)["warnings"] == []
+
+
 @pytest.mark.parametrize("part", ["arkit", "visemes"])
 def test_what_is_not_available_yet_says_so(client: TestClient, session: str, part: str) -> None:
     answer = client.patch(f"/api/sessions/{session}/controls", json={part: {"jawOpen": 0.4}})

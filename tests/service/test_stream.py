@@ -145,6 +145,13 @@ def test_a_message_that_cannot_be_obeyed_is_answered(
         frame_where(socket, lambda frame: frame.tick > 0)
 
 
+def test_a_clash_is_said_over_the_socket(client: TestClient, session: str) -> None:
+    with connect(client, session) as socket:
+        events_until(socket, "hello")
+        socket.send_json({"type": "controls", "action_units": {"AU12": 0.8, "L12": 0.2}})
+        assert "both named" in str(events_until(socket, "warning")["message"])
+
+
 def test_binary_messages_are_not_understood(client: TestClient, session: str) -> None:
     with connect(client, session) as socket:
         events_until(socket, "hello")
@@ -161,9 +168,12 @@ def test_a_message_beyond_the_limit_ends_the_socket(client: TestClient, session:
         assert closed.value.code == 1009
 
 
-def test_another_version_is_closed_with_a_reason(client: TestClient, session: str) -> None:
+@pytest.mark.parametrize("version", ["risorius.v2", "risorius.v2-monkey"])
+def test_another_version_is_closed_with_a_reason(
+    client: TestClient, session: str, version: str
+) -> None:
     path = f"ws://localhost/api/sessions/{session}/stream"
-    with client.websocket_connect(path, subprotocols=["risorius.v2"]) as socket:
+    with client.websocket_connect(path, subprotocols=[version]) as socket:
         with pytest.raises(WebSocketDisconnect) as closed:
             socket.receive_text()
         assert closed.value.code == 1002
