@@ -5,6 +5,7 @@ Unknown fields, NaN and infinity are refused; numbers and sizes are bounded.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -198,7 +199,7 @@ Message = Annotated[ControlsMessage | EmotionMessage | AckMessage, Field(discrim
 MESSAGE: TypeAdapter[ControlsMessage | EmotionMessage | AckMessage] = TypeAdapter(Message)
 
 
-def explain(errors: list[Any]) -> str:
+def explain(errors: Sequence[Any]) -> str:
     """Return one sentence about the first of pydantic's `errors`."""
     if not errors:
         return "the body is not valid"

@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import structlog
+from pydantic import ValidationError
 
 from engine import Cancelled, Clip, EngineError, Rig, Timeline, clip_to_glb
 
-from .bodies import NewClip
+from .bodies import NewClip, explain
 from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .ground_truth import ground_truth_csv
@@ -75,7 +76,12 @@ class Clips:
         """Take up again what a stopped service left behind."""
         for row in self._store.clips():
             if row.status not in _FINISHED:
-                self._launch(row.id, NewClip.model_validate(row.request))
+                try:
+                    request = NewClip.model_validate(row.request)
+                except ValidationError as error:
+                    self._fail(row.id, f"this version cannot read it: {explain(error.errors())}")
+                else:
+                    self._launch(row.id, request)
 
     async def stop(self) -> None:
         """Stop rendering; what is not done is taken up at the next start."""

@@ -306,8 +306,15 @@ class Sessions:
                 *(self._tend(session, each_second) for session in list(self._live.values()))
             )
             if beat % (60 * _BEATS_PER_SECOND) == 0:
-                used_before = time.time() - self._idle_seconds
-                self._store.remove_idle_sessions(used_before, but=list(self._live))
+                self._forget_sleepers()
+
+    def _forget_sleepers(self) -> None:
+        """Forget the stored sessions that nobody woke; a database that is busy has its next try."""
+        used_before = time.time() - self._idle_seconds
+        try:
+            self._store.remove_idle_sessions(used_before, but=list(self._live))
+        except Exception:
+            _LOG.exception("idle sessions could not be forgotten")
 
     async def _tend(self, session: Session, each_second: bool) -> None:
         try:

@@ -15,6 +15,7 @@ from engine import Keyframe, Rig, Simulator, Timeline, record
 from service.app import create_app
 from service.runner import Move
 from service.sessions import Command, Session
+from service.store import Store
 
 
 def live(client: TestClient, session: str) -> Session:
@@ -118,6 +119,19 @@ def test_a_restarted_service_has_its_sessions_and_clips(tmp_path: Path) -> None:
         assert client.get(clip).json()["status"] in ("queued", "running")
         assert client.delete(clip).status_code == 204
         until(lambda: client.get(done).json()["status"] == "done")
+
+
+def test_a_clip_that_cannot_be_read_any_more_fails_alone(tmp_path: Path) -> None:
+    settings = settings_in(tmp_path)
+    store = Store(settings.database)
+    store.add_clip("old", rig="standard", fps=30, request={"timeline": [], "gone": 1})
+    store.add_clip("new", rig="standard", fps=30, request={"timeline": [], "duration": 0.1})
+    store.close()
+    with TestClient(create_app(settings), base_url=LOCAL) as client:
+        until(lambda: client.get("/api/clips/new").json()["status"] == "done")
+        old = client.get("/api/clips/old").json()
+    assert old["status"] == "failed"
+    assert "gone" in old["message"]
 
 
 @pytest.mark.parametrize("gone", ["a", "session"])

@@ -243,3 +243,15 @@ def test_an_unknown_session_is_not_found(client: TestClient, path: str) -> None:
     answer = client.request(method, f"/api/sessions/nobody{path}", json=body)
     assert answer.status_code == 404
     assert answer.json()["error"] == "unknown_session"
+
+
+def test_a_busy_database_does_not_end_the_beat(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def busy(*_: object, **__: object) -> None:
+        raise OSError("the database is locked")
+
+    sessions = client.app.state.parts.sessions  # type: ignore[attr-defined]
+    monkeypatch.setattr(sessions._store, "remove_idle_sessions", busy)
+    sessions._forget_sleepers()
+    assert not any(task.done() for task in sessions._tasks)
