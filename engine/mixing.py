@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from .arrays import FloatArray
 from .channels import GROUPS
 from .rig import Rig
 from .timeline import LAYERS, Keyframe, ticks
+
+Name = TypeVar("Name", str, tuple[str, str])
 
 
 @dataclass
@@ -101,7 +104,7 @@ class Mixer:
         _merge(held.muscles, keyframe.muscles)
         for group in GROUPS:
             for axis, value in getattr(keyframe, group).items():
-                held.axes[group, axis] = value
+                _merge(held.axes, {(group, axis): value})
         held.weight = keyframe.weight
         held.expires = None
         if keyframe.hold is not None:
@@ -267,7 +270,7 @@ def unit_key(name: str, side: str) -> str:
     return f"{side}{name.removeprefix('AU')}" if side else name
 
 
-def _merge(held: dict[str, float], named: Mapping[str, float]) -> None:
+def _merge(held: dict[Name, float], named: Mapping[Name, float]) -> None:
     """Take the named values into `held`; 0 lets go of a name."""
     for name, value in named.items():
         if value == 0.0:

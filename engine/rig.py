@@ -323,6 +323,8 @@ class Rig:
 
     def _custom_unit(self, name: str, spec: Mapping[str, object]) -> ActionUnit:
         known = {"muscles", "jaw", "title", "region"}
+        if not isinstance(spec, Mapping):
+            raise InvalidValue(f"action unit {name!r} is {spec!r}; expected an object")
         for key in spec:
             if key not in known:
                 raise UnknownName("action unit field", key, known)
@@ -354,6 +356,8 @@ class Rig:
         for term in parse_facs(recipe):
             self.resolve_unit(term.key)
         synonyms = spec.get("synonyms", ()) if isinstance(spec, Mapping) else ()
+        if not isinstance(synonyms, list | tuple) or not all(isinstance(w, str) for w in synonyms):
+            raise InvalidValue(f"emotion {label!r}: synonyms are {synonyms!r}; expected words")
         words = tuple(str(word).strip().lower() for word in synonyms)
         return Emotion(label.strip().lower(), recipe, "yours", words)
 
@@ -403,6 +407,8 @@ def _as_in_the_paper(muscle: Muscle) -> Muscle:
 
 
 def _edited_muscle(muscle: Muscle, changes: Mapping[str, object]) -> Muscle:
+    if not isinstance(changes, Mapping):
+        raise InvalidValue(f"muscle {muscle.name}: changes are {changes!r}; expected an object")
     if not changes:
         return muscle
     allowed = {f.name for f in fields(muscle)} & set(EDITABLE)

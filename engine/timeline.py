@@ -30,7 +30,7 @@ class Keyframe:
         layer: One of `LAYERS`.
         action_units: Intensity 0..1 by "AU12" (both sides), "L12" or "R12"; 0 lets go.
         muscles: Raw activation 0..1 by muscle name; 0 lets go.
-        jaw: "pitch" and "yaw", degrees, "thrust", mm.
+        jaw: "pitch" and "yaw", degrees, "thrust", mm; as in gaze and head, 0 lets go.
         gaze: "yaw" and "pitch", degrees: left and up are positive.
         head: "yaw", "pitch" and "roll", degrees: left, up, to the left shoulder.
         emotion: Label and intensity; it replaces the layer's action units.

@@ -112,3 +112,14 @@ def test_a_fade_goes_on_through_a_live_edit(standard_rig):
     there = there.moved_to(stiffer, 20)
     for tick in range(20, 200, 10):
         assert here.at(tick) == pytest.approx(there.at(tick), abs=1e-12)
+
+
+def test_a_jaw_axis_at_zero_lets_go_of_what_lies_under_it(standard_rig):
+    mixer = Mixer(standard_rig)
+    pitch = standard_rig.channels.index("jaw", "pitch")
+    mixer.apply(Keyframe(layer="emotion", action_units={"AU26": 1.0}), 0)
+    mixer.apply(Keyframe(jaw={"pitch": 3.0}), 1)
+    assert mixer.at(2)[pitch] == 3.0
+    mixer.apply(Keyframe(jaw={"pitch": 0.0}), 3)
+    assert mixer.at(4)[pitch] > 10.0
+    assert "puppet" not in mixer.report(4)["layers"]

@@ -88,6 +88,9 @@ def test_a_side_moves_that_side_only(standard_rig):
         ({"action_units": {"X": {"weights": {}}}}, UnknownName, "action unit field"),
         ({"emotions": {"x": "99A"}}, UnknownName, "action unit"),
         ({"emotions": {"x": 4}}, InvalidValue, "FACS string"),
+        ({"emotions": {"x": {"recipe": "6C", "synonyms": 5}}}, InvalidValue, "expected words"),
+        ({"action_units": {"X": None}}, InvalidValue, "expected an object"),
+        ({"muscles": {"risorius.L": None}}, InvalidValue, "expected an object"),
     ],
 )
 def test_bad_edits_are_refused_with_what_was_given(standard_rig, edit, error, message):
