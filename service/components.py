@@ -49,7 +49,12 @@ class Components:
     def make(cls, settings: Settings, metrics: Metrics, rate: RateLimit) -> Components:
         """Wire the parts; nothing runs before `start`."""
         store = Store(settings.database)
-        rigs = Rigs(store, cache_dir=settings.cache_dir / "files", limit=settings.max_rigs)
+        rigs = Rigs(
+            store,
+            cache_dir=settings.cache_dir / "files",
+            cache_bytes=settings.max_cache_bytes,
+            limit=settings.max_rigs,
+        )
         runner = EmbeddedRunner(
             simulation_threads=settings.simulation_threads, render_threads=settings.render_threads
         )

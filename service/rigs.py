@@ -9,6 +9,7 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -39,9 +40,10 @@ _CHANGES = ("tissue", "muscles", "action_units", "emotions", "name")
 class Rigs:
     """Rigs by name or id, and the GLB files made from them."""
 
-    def __init__(self, store: Store, *, cache_dir: Path, limit: int) -> None:
+    def __init__(self, store: Store, *, cache_dir: Path, cache_bytes: int, limit: int) -> None:
         self._store = store
         self._cache_dir = cache_dir
+        self._cache_bytes = cache_bytes
         self._limit = limit
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="rigs")
         self._files_pool = ThreadPoolExecutor(1, thread_name_prefix="files")
@@ -144,7 +146,7 @@ class Rigs:
     async def _file(self, key: str, make: Callable[[], bytes]) -> bytes:
         path = self._cache_dir / f"{key}-{_engine_stamp()}.glb"
         try:
-            return await self._files.get(key, lambda: _stored(path, make))
+            return await self._files.get(key, lambda: _stored(path, make, self._cache_bytes))
         except EngineError as error:
             raise refused_by_engine(error) from error
 
@@ -213,17 +215,32 @@ def _engine_stamp() -> str:
     return digest.hexdigest()[:12]
 
 
-def _stored(path: Path, make: Callable[[], bytes]) -> bytes:
+def _stored(path: Path, make: Callable[[], bytes], most_bytes: int) -> bytes:
     """Return the file at `path`, or make and keep it; an unwritable folder costs only time."""
     try:
-        return path.read_bytes()
+        data = path.read_bytes()
     except OSError:
         data = make()
+    else:
+        with suppress(OSError):
+            os.utime(path)  # What is asked for stays; see `_forget_oldest`.
+        return data
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
             file.write(data)
         os.replace(file.name, path)
+        _forget_oldest(path.parent, most_bytes)
     except OSError:
         _LOG.warning("the cache folder cannot be written", path=str(path.parent))
     return data
+
+
+def _forget_oldest(folder: Path, most_bytes: int) -> None:
+    """Remove the files of `folder` that were asked for longest ago, beyond `most_bytes`."""
+    files = [(file.stat(), file) for file in folder.glob("*.glb")]
+    size = 0
+    for stat, file in sorted(files, key=lambda entry: entry[0].st_mtime, reverse=True):
+        size += stat.st_size
+        if size > most_bytes:
+            file.unlink(missing_ok=True)

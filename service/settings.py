@@ -68,6 +68,9 @@ class Settings(BaseSettings):
     max_sessions: int = Field(default=256, ge=1, description="Most sessions open at once.")
     max_viewers: int = Field(default=64, ge=1, description="Most sockets open on one session.")
     max_rigs: int = Field(default=1000, ge=1, description="Most derived rigs kept.")
+    max_cache_bytes: int = Field(
+        default=1_000_000_000, ge=0, description="Most bytes of GLB files kept in the cache folder."
+    )
     max_clips: int = Field(default=1000, ge=1, description="Most clips kept, whatever their state.")
     max_queued_clips: int = Field(
         default=32, ge=1, description="Most clips waiting or being rendered."

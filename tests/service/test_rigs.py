@@ -173,6 +173,15 @@ def test_a_muscle_is_edited_under_a_live_face(client: TestClient, session: str) 
     assert "zygomatic_major.L" in unknown.json()["known"]
 
 
+def test_the_cache_folder_is_bounded(tmp_path: Path) -> None:
+    settings = settings_in(tmp_path, max_cache_bytes=12_000_000)
+    with TestClient(create_app(settings), base_url=LOCAL) as client:
+        for number in (1, 2, 4, 5):
+            assert client.get(f"/api/rigs/standard/expressions/{number}C.glb").status_code == 200
+    sizes = [file.stat().st_size for file in (tmp_path / "cache" / "files").iterdir()]
+    assert 0 < sum(sizes) <= 12_000_000
+
+
 def edited(client: TestClient, session: str, strength: float) -> str:
     path = f"/api/sessions/{session}/muscles/zygomatic_major.L"
     answer = client.patch(path, json={"strength": strength})
