@@ -92,6 +92,7 @@ class Session:
             "id": self.id,
             "rig": self.rig.id,
             "rig_name": self.rig.name,
+            "model": asdict(self.model),
             "stream": f"/api/sessions/{self.id}/stream",
             "surface": f"/api/rigs/{self.rig.id}/surface.glb",
             "tick": self.frame.tick,

@@ -42,6 +42,10 @@ def test_a_session_runs_the_model_it_asks_for(client: TestClient) -> None:
     answer = client.post("/api/sessions", json=body)
     assert answer.status_code == 201
     session = answer.json()["id"]
+    own = client.get("/api/rigs/standard").json()["model"]
+    assert answer.json()["model"] == {**own, "integrator": "symplectic_euler"}
+    home = client.app.state.parts.runner._home[session]  # type: ignore[attr-defined]
+    assert home.simulator.model.integrator == "symplectic_euler"
     control(client, session, action_units={"AU12": 1.0})
     client.delete(f"/api/sessions/{session}")
 
