@@ -20,13 +20,12 @@ from .bodies import NewClip, explain
 from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .ground_truth import ground_truth_csv
+from .rendering import SIMULATION_SHARE
 from .rigs import Rigs
 from .runner import Runner
 from .store import ClipRow, Store
 
 _LOG = structlog.get_logger("clips")
-# Share of the work, for the progress bar, that is simulation; the rest is writing the files.
-_SIMULATION_SHARE = 0.9
 _FINISHED = ("done", "failed", "cancelled")
 
 
@@ -38,9 +37,13 @@ class _Job:
     progress: float = 0.0
     cancelled: threading.Event = field(default_factory=threading.Event)
 
-    def advance(self, share: float) -> None:
+    def simulated(self, share: float) -> None:
         """Take the simulation's progress; called from the rendering thread."""
-        self.progress = _SIMULATION_SHARE * min(1.0, max(0.0, share))
+        self.progress = SIMULATION_SHARE * share
+
+    def written(self, share: float) -> None:
+        """Take the progress of the file; called from the thread that writes it."""
+        self.progress = SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share
 
 
 class Clips:
@@ -222,11 +225,11 @@ class Clips:
             timeline,
             request.fps,
             model=model_of(request.model, rig),
-            progress=job.advance,
+            progress=job.simulated,
             cancelled=job.cancelled.is_set,
         )
         simulated = time.perf_counter()
-        size = await asyncio.to_thread(self._write, clip, rendered, timeline)
+        size = await asyncio.to_thread(self._write, clip, rendered, timeline, job)
         ended = time.perf_counter()
         return {
             "frames": len(rendered.displacements),
@@ -238,9 +241,9 @@ class Clips:
             "warnings": warnings,
         }
 
-    def _write(self, clip: str, rendered: Clip, timeline: Timeline) -> int:
+    def _write(self, clip: str, rendered: Clip, timeline: Timeline, job: _Job) -> int:
         self._folder.mkdir(parents=True, exist_ok=True)
-        data = clip_to_glb(rendered)
+        data = clip_to_glb(rendered, progress=job.written, cancelled=job.cancelled.is_set)
         self._path(clip, "glb").write_bytes(data)
         self._path(clip, "csv").write_text(ground_truth_csv(rendered, timeline))
         return len(data)

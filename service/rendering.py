@@ -16,7 +16,8 @@ from .commands import clip_timeline, model_of
 from .errors import Refused
 
 Show = Callable[[str, float], None]
-_SIMULATION_SHARE = 0.9
+SIMULATION_SHARE = 0.2
+"""Share of a clip's work that is simulation; the rest is writing its file."""
 
 
 class ClipRefused(Exception):
@@ -50,10 +51,14 @@ def render_file(source: Path, output: Path, *, rig: str | None, fps: int | None,
             timeline,
             fps=clip.fps,
             model=model_of(clip.model, chosen),
-            progress=lambda share: show("simulating", _SIMULATION_SHARE * share),
+            progress=lambda share: show("simulating", SIMULATION_SHARE * share),
         )
-        show("writing", _SIMULATION_SHARE)
-        data = clip_to_glb(rendered)
+        data = clip_to_glb(
+            rendered,
+            progress=lambda share: show(
+                "writing", SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share
+            ),
+        )
         output.write_bytes(data)
     except (EngineError, Refused) as error:
         raise ClipRefused(f"{source} cannot be rendered: {error}.") from error

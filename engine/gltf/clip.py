@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
-from ..clip import Clip
+from ..clip import Clip, Progress
+from ..errors import Cancelled
 from .basis import SHARE_DROPPED, MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder, metres
 from .drawn import DrawnFace
-from .error import Motion
+from .error import FRAMES_AT_ONCE, Motion
 from .pose import RigidMotion, motions
 from .scene import Pivot, add_pivots, add_rigid_parts, file_extras
 from .skin import add_skin, turn_of
@@ -21,13 +22,21 @@ from .skin import add_skin, turn_of
 ANIMATION_NAME = "performance"
 NORMAL_FRAMES = 150
 """Frames that the shapes' normals are fitted to."""
+DRAWN_SHARE, BASIS_SHARE = 0.5, 0.95
+"""Shares of the work that is done once the frames are drawn, and once their basis is found."""
 ROUNDING = 1e-4
 """What single precision in metres may add to an error, mm."""
 BYTES_IN_MEMORY = 2**29
 """Motion larger than this is not held but drawn again when it is looked at."""
 
 
-def clip_to_glb(clip: Clip, *, tolerance: float = 0.05) -> bytes:
+def clip_to_glb(
+    clip: Clip,
+    *,
+    tolerance: float = 0.05,
+    progress: Progress | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> bytes:
     """Return `clip` as GLB: one animation, a key per frame.
 
     Skin and strands share one set of morph targets, a basis of their simulated motion with as few
@@ -37,10 +46,17 @@ def clip_to_glb(clip: Clip, *, tolerance: float = 0.05) -> bytes:
     Args:
         clip: What to write.
         tolerance: Largest error of any vertex [mm].
+        progress: Told the share of the work done, 0 to 1.
+        cancelled: Asked before each frame is drawn whether to stop.
+
+    Raises:
+        Cancelled: `cancelled` said so.
     """
     rig = clip.rig
     face = DrawnFace.of(rig.head)
-    basis = fit_basis(_drawn_motion(clip, face), tolerance=tolerance)
+    progress = progress or _nobody
+    basis = fit_basis(_drawn_motion(clip, face, progress, cancelled), tolerance=tolerance)
+    progress(BASIS_SHARE)
     builder = GlbBuilder(_extras(clip, basis, tolerance))
     pivots = add_pivots(builder, rig.head, rig.jaw)
     skin = add_skin(
@@ -55,7 +71,9 @@ def clip_to_glb(clip: Clip, *, tolerance: float = 0.05) -> bytes:
     add_rigid_parts(builder, rig.head, pivots)
     channels = [Channel(skin, "weights", basis.weights.ravel()), *_pose_channels(clip, pivots)]
     builder.animation(ANIMATION_NAME, np.arange(len(clip.displacements)) / clip.fps, channels)
-    return builder.to_bytes()
+    data = builder.to_bytes()
+    progress(1.0)
+    return data
 
 
 def _extras(clip: Clip, basis: MotionBasis, tolerance: float) -> dict[str, object]:
@@ -78,6 +96,7 @@ class DrawnMotion:
     face: DrawnFace
     rest: FloatArray
     displacements: Float32Array
+    cancelled: Callable[[], bool] | None = None
 
     def __len__(self) -> int:
         return len(self.displacements)
@@ -85,15 +104,33 @@ class DrawnMotion:
     def __getitem__(self, frames: slice | IntArray, /) -> Float32Array:
         chosen = self.displacements[frames]
         motion = np.empty((len(chosen), *self.rest.shape), np.float32)
-        for frame, displacements in zip(motion, chosen, strict=True):
-            frame[:] = self.face.positions(displacements) - self.rest
+        for index, displacements in enumerate(chosen):
+            if self.cancelled is not None and self.cancelled():
+                raise Cancelled("the writing of a clip was stopped")
+            if index and np.array_equal(displacements, chosen[index - 1]):
+                motion[index] = motion[index - 1]  # A face that sleeps.
+            else:
+                motion[index] = self.face.positions(displacements) - self.rest
         return motion
 
 
-def _drawn_motion(clip: Clip, face: DrawnFace) -> Motion:
-    motion = DrawnMotion(face, face.rest_positions(), clip.displacements)
-    size = len(motion) * motion.rest.size * np.dtype(np.float32).itemsize
-    return motion[:] if size <= BYTES_IN_MEMORY else motion
+def _drawn_motion(
+    clip: Clip, face: DrawnFace, progress: Progress, cancelled: Callable[[], bool] | None
+) -> Motion:
+    motion = DrawnMotion(face, face.rest_positions(), clip.displacements, cancelled)
+    count = len(motion)
+    if count * motion.rest.size * np.dtype(np.float32).itemsize > BYTES_IN_MEMORY:
+        return motion
+    held = np.empty((count, *motion.rest.shape), np.float32)
+    for start in range(0, count, FRAMES_AT_ONCE):
+        frames = slice(start, min(start + FRAMES_AT_ONCE, count))
+        held[frames] = motion[frames]
+        progress(DRAWN_SHARE * frames.stop / count)
+    return held
+
+
+def _nobody(_share: float) -> None:
+    """Tell nobody how far it is."""
 
 
 def _turns(clip: Clip, face: DrawnFace, basis: MotionBasis) -> Float32Array:

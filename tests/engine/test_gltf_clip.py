@@ -11,7 +11,9 @@ from glb_reader import Glb
 from glb_tools import assert_valid, run_node
 from small_motion import small_clip
 
+from engine.errors import Cancelled
 from engine.gltf import clip_to_glb
+from engine.gltf.clip import DrawnMotion
 from engine.gltf.drawn import DrawnFace
 from engine.gltf.pose import motions
 
@@ -165,3 +167,34 @@ def test_three_plays_it(clip: Any, data: bytes, tmp_path: Path) -> None:
     assert report["animation"] == "performance"
     teeth = Glb(data).positions("teeth.lower", time=frame / clip.fps)[0]
     np.testing.assert_allclose(report["teeth.lower"], teeth, atol=1e-6)
+
+
+def test_writing_says_how_far_it_is(clip: Any, data: bytes) -> None:
+    shares: list[float] = []
+    assert clip_to_glb(clip, tolerance=0.02, progress=shares.append) == data
+    assert shares == sorted(shares)
+    assert shares[0] < 1.0
+    assert shares[-1] == 1.0
+
+
+def test_writing_can_be_stopped(clip: Any) -> None:
+    asked = iter([False] * 5 + [True])
+    with pytest.raises(Cancelled, match="stopped"):
+        clip_to_glb(clip, cancelled=lambda: next(asked))
+
+
+def test_frames_of_a_sleeping_face_are_drawn_once(
+    clip: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    face = DrawnFace.of(clip.rig.head)
+    moved = clip.displacements[[7, 7, 7, 20, 7]]
+    rest = face.rest_positions()
+    drawn: list[np.ndarray] = []
+    positions = DrawnFace.positions
+    monkeypatch.setattr(
+        DrawnFace, "positions", lambda face, one: drawn.append(one) or positions(face, one)
+    )
+    motion = DrawnMotion(face, rest, moved)[:]
+    assert len(drawn) == 3
+    for frame, one in zip(motion, moved, strict=True):
+        np.testing.assert_array_equal(frame, (positions(face, one) - rest).astype(np.float32))
