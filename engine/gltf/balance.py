@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray
-from .error import fewest_shapes, rows_of, vertex_errors
+from .error import Check, fewest_shapes, rows_of, vertex_errors
 
 BALANCING_ROUNDS = 6
 """Times that the weights of vertices and frames are improved; later rounds gain nothing."""
@@ -60,7 +60,9 @@ class ShapeSpace:
         return np.asarray(scaled.T.astype(np.float32) @ rows_of(frames), dtype=np.float64)
 
 
-def balanced_space(frames: Float32Array, tolerance: float) -> ShapeSpace:
+def balanced_space(
+    frames: Float32Array, tolerance: float, *, check: Check | None = None
+) -> ShapeSpace:
     """Return the space that needs the fewest shapes to keep to `tolerance`.
 
     A plain SVD leaves the least mean error, but its largest error sits in a few vertices and
@@ -70,6 +72,7 @@ def balanced_space(frames: Float32Array, tolerance: float) -> ShapeSpace:
     Args:
         frames: Displacements [mm], shape (f, v, 3).
         tolerance: Largest error allowed [mm].
+        check: Called now and then; raises to stop.
     """
     vertex_scale, frame_scale = np.ones(frames.shape[1]), np.ones(len(frames))
     best: ShapeSpace | None = None
@@ -77,7 +80,7 @@ def balanced_space(frames: Float32Array, tolerance: float) -> ShapeSpace:
         trial = _weighted_space(frames, vertex_scale, frame_scale, NEGLIGIBLE * tolerance)
         shapes = trial.shapes(frames).astype(np.float32)
         weights = trial.own_weights.astype(np.float32)
-        count, _ = fewest_shapes(frames, shapes, weights, tolerance)
+        count, _ = fewest_shapes(frames, shapes, weights, tolerance, check=check)
         if best is None or count < best.count:
             best = replace(trial, count=count)
         # Judged with too few shapes, for there the error shows where more are wanted.

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
 from .balance import ShapeSpace, balanced_space
-from .error import Motion, fewest_shapes, parts_of
+from .error import Check, Motion, fewest_shapes, parts_of
 
 SNAPSHOT_COUNT = 400
 """Frames that a basis is first made from; more are added only where those do not suffice."""
@@ -33,7 +33,7 @@ class MotionBasis:
     max_error: float
 
 
-def fit_basis(motion: Motion, *, tolerance: float) -> MotionBasis:
+def fit_basis(motion: Motion, *, tolerance: float, check: Check | None = None) -> MotionBasis:
     """Return few principal shapes that reproduce `motion` to `tolerance`.
 
     The shapes are the leading singular vectors of the frames, weighted so that the largest error
@@ -43,10 +43,11 @@ def fit_basis(motion: Motion, *, tolerance: float) -> MotionBasis:
     Args:
         motion: What to reproduce; at least one frame.
         tolerance: Largest error allowed of any vertex in any frame [mm].
+        check: Called now and then; raises to stop.
     """
     chosen = np.unique(np.linspace(0, len(motion) - 1, SNAPSHOT_COUNT).round().astype(np.int64))
     while True:
-        basis, errors = _fit_to(motion, chosen, tolerance)
+        basis, errors = _fit_to(motion, chosen, tolerance, check)
         missed = np.setdiff1d(np.flatnonzero(errors > tolerance), chosen)
         if missed.size == 0:
             return basis
@@ -54,17 +55,19 @@ def fit_basis(motion: Motion, *, tolerance: float) -> MotionBasis:
         chosen = np.union1d(chosen, worst[: SNAPSHOT_COUNT // 4])
 
 
-def _fit_to(motion: Motion, chosen: IntArray, tolerance: float) -> tuple[MotionBasis, FloatArray]:
+def _fit_to(
+    motion: Motion, chosen: IntArray, tolerance: float, check: Check | None
+) -> tuple[MotionBasis, FloatArray]:
     """Return the basis made from the `chosen` frames, and its error in every frame [mm]."""
     frames = motion[chosen]
     stride = max(1, frames.shape[1] // SAMPLE_COUNT)
-    space = balanced_space(np.ascontiguousarray(frames[:, ::stride]), tolerance)
+    space = balanced_space(np.ascontiguousarray(frames[:, ::stride]), tolerance, check=check)
     weights = space.own_weights
     if len(chosen) < len(motion):
         weights = np.concatenate([space.weights(part[:, ::stride]) for part in parts_of(motion)])
         weights[chosen] = space.own_weights
     rounded = _rounded(space.shapes(frames), weights, tolerance)
-    count, errors = fewest_shapes(motion, *rounded, tolerance, start=_start(space))
+    count, errors = fewest_shapes(motion, *rounded, tolerance, start=_start(space), check=check)
     kept = rounded[0][:count].reshape(count, -1, 3)
     own = np.ascontiguousarray(rounded[1][:, :count])
     return MotionBasis(kept, own, float(errors.max())), errors

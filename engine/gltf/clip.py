@@ -14,7 +14,7 @@ from ..errors import Cancelled
 from .basis import SHARE_DROPPED, MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder, metres
 from .drawn import DrawnFace
-from .error import FRAMES_AT_ONCE, Motion
+from .error import FRAMES_AT_ONCE, Check, Motion
 from .pose import RigidMotion, motions
 from .scene import Pivot, add_pivots, add_rigid_parts, file_extras
 from .skin import add_skin, turn_of
@@ -47,7 +47,7 @@ def clip_to_glb(
         clip: What to write.
         tolerance: Largest error of any vertex [mm].
         progress: Told the share of the work done, 0 to 1.
-        cancelled: Asked before each frame is drawn whether to stop.
+        cancelled: Asked again and again whether to stop.
 
     Raises:
         Cancelled: `cancelled` said so.
@@ -55,7 +55,13 @@ def clip_to_glb(
     rig = clip.rig
     face = DrawnFace.of(rig.head)
     progress = progress or _nobody
-    basis = fit_basis(_drawn_motion(clip, face, progress, cancelled), tolerance=tolerance)
+
+    def check() -> None:
+        if cancelled is not None and cancelled():
+            raise Cancelled("the writing of a clip was stopped")
+
+    motion = _drawn_motion(clip, face, progress, check)
+    basis = fit_basis(motion, tolerance=tolerance, check=check)
     progress(BASIS_SHARE)
     builder = GlbBuilder(_extras(clip, basis, tolerance))
     pivots = add_pivots(builder, rig.head, rig.jaw)
@@ -96,7 +102,7 @@ class DrawnMotion:
     face: DrawnFace
     rest: FloatArray
     displacements: Float32Array
-    cancelled: Callable[[], bool] | None = None
+    check: Check | None = None
 
     def __len__(self) -> int:
         return len(self.displacements)
@@ -105,8 +111,8 @@ class DrawnMotion:
         chosen = self.displacements[frames]
         motion = np.empty((len(chosen), *self.rest.shape), np.float32)
         for index, displacements in enumerate(chosen):
-            if self.cancelled is not None and self.cancelled():
-                raise Cancelled("the writing of a clip was stopped")
+            if self.check is not None:
+                self.check()
             if index and np.array_equal(displacements, chosen[index - 1]):
                 motion[index] = motion[index - 1]  # A face that sleeps.
             else:
@@ -114,10 +120,8 @@ class DrawnMotion:
         return motion
 
 
-def _drawn_motion(
-    clip: Clip, face: DrawnFace, progress: Progress, cancelled: Callable[[], bool] | None
-) -> Motion:
-    motion = DrawnMotion(face, face.rest_positions(), clip.displacements, cancelled)
+def _drawn_motion(clip: Clip, face: DrawnFace, progress: Progress, check: Check) -> Motion:
+    motion = DrawnMotion(face, face.rest_positions(), clip.displacements, check)
     count = len(motion)
     if count * motion.rest.size * np.dtype(np.float32).itemsize > BYTES_IN_MEMORY:
         return motion

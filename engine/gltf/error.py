@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Protocol
 
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
 
+Check = Callable[[], None]
+"""Asks whether to go on, and raises when not: a long clip takes minutes."""
 FRAMES_AT_ONCE = 64
 """Frames looked at together; bounds the memory."""
 
@@ -35,6 +37,7 @@ def fewest_shapes(
     tolerance: float,
     *,
     start: int = 1,
+    check: Check | None = None,
 ) -> tuple[int, FloatArray]:
     """Return the smallest count of shapes that keeps to `tolerance`, all if none does.
 
@@ -47,12 +50,15 @@ def fewest_shapes(
         weights: Of each shape in each frame, shape (f, k).
         tolerance: Largest error allowed [mm].
         start: A count that is known to be too small, or one.
+        check: Called before each part of a walk; raises to stop.
     """
     count, walked = start, 0
     errors: list[FloatArray] = []
     while walked != count:
         walked, errors = count, []
         for part, own in zip(parts_of(motion), parts_of(weights), strict=True):
+            if check is not None:
+                check()
             own_errors = _frame_errors(part, shapes, own, count)
             if own_errors.max() > tolerance:
                 count = _fewest_of_part(part, shapes, own, tolerance, count)

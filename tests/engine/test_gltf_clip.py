@@ -13,7 +13,7 @@ from small_motion import small_clip
 
 from engine.errors import Cancelled
 from engine.gltf import clip_to_glb
-from engine.gltf.clip import DrawnMotion
+from engine.gltf.clip import DRAWN_SHARE, DrawnMotion
 from engine.gltf.drawn import DrawnFace
 from engine.gltf.pose import motions
 
@@ -177,10 +177,17 @@ def test_writing_says_how_far_it_is(clip: Any, data: bytes) -> None:
     assert shares[-1] == 1.0
 
 
-def test_writing_can_be_stopped(clip: Any) -> None:
+def test_drawing_can_be_stopped(clip: Any) -> None:
     asked = iter([False] * 5 + [True])
     with pytest.raises(Cancelled, match="stopped"):
         clip_to_glb(clip, cancelled=lambda: next(asked))
+
+
+def test_the_search_for_shapes_can_be_stopped(clip: Any) -> None:
+    shares = [0.0]
+    with pytest.raises(Cancelled, match="stopped"):
+        clip_to_glb(clip, progress=shares.append, cancelled=lambda: shares[-1] > 0.0)
+    assert shares[-1] == DRAWN_SHARE
 
 
 def test_frames_of_a_sleeping_face_are_drawn_once(
