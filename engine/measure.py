@@ -154,18 +154,3 @@ def measure_units(rig: Rig, *, model: Model | None = None) -> list[Measured]:
         for landmark in LANDMARKS
         if landmark.unit in by_unit
     ]
-
-
-def table(measured: Sequence[Measured]) -> str:
-    """Return the figures as a Markdown table."""
-    rows = [
-        "| AU | landmark | human range, mm | measured, mm | direction | range |",
-        "|---|---|---|---|---|---|",
-    ]
-    for m in measured:
-        mark = m.landmark
-        rows.append(
-            f"| {mark.unit} | {mark.what} | {mark.low:g} to {mark.high:g} | {m.value:.1f} "
-            f"| {'right' if m.direction_right else 'WRONG'} | {'in' if m.in_range else 'out'} |"
-        )
-    return "\n".join(rows)
