@@ -153,8 +153,13 @@ def _held_units(
     """Return the units a layer holds; a unit at 0 is kept, for it lets go of an emotion's."""
     units = dict(before)
     hold_units(rig, units, named)
-    let_go = (rig.resolve_unit(key) for key, value in named.items() if value == 0.0)
-    return units | {unit_key(unit.name, side): 0.0 for unit, side in let_go}
+    for key in (key for key, value in named.items() if value == 0.0):
+        unit, side = rig.resolve_unit(key)
+        sides = [unit_key(unit.name, each) for each in "LR"]
+        split = not side and any(each in units for each in sides)
+        for each in sides if split else [unit_key(unit.name, side)]:
+            units.setdefault(each, 0.0)
+    return units
 
 
 def held_to_json(held: Mapping[str, Keyframe]) -> list[Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from engine import Keyframe, Rig, Simulator, builtin_rig
@@ -44,6 +44,14 @@ def simulator() -> Simulator:
 
 
 @given(commands=st.lists(COMMANDS, max_size=5))
+@example(commands=[Keyframe(action_units={"AU12": 0.0, "12": 1.0})])
+@example(commands=[Keyframe(action_units={"L12": 1.0}), Keyframe(action_units={"AU12": 0.5})])
+@example(
+    commands=[
+        Keyframe(action_units={"AU12": 0.0, "L12": 0.5}),
+        Keyframe(action_units={"R12": 0.0}),
+    ]
+)
 @settings(max_examples=150, deadline=None)
 def test_a_restart_holds_what_was_held(simulator: Simulator, commands: list[Keyframe]) -> None:
     held: dict[str, Keyframe] = {}
