@@ -82,6 +82,16 @@ def test_the_python_example_renders_a_smile(tmp_path: Path) -> None:
     assert (tmp_path / "smile.glb").read_bytes()[:4] == b"glTF"
 
 
+def test_the_table_is_what_the_calibration_fits() -> None:
+    from engine import builtin_rig, measure_units
+
+    rows = re.findall(r"(AU\d+) \| ([a-z ]+) \| [^|]+ \| (-?[\d.]+)", README)
+    told = {(unit, what.strip()): float(value) for unit, what, value in rows}
+    for measured in measure_units(builtin_rig("standard")):
+        mark = measured.landmark
+        assert told[mark.unit, mark.what] == pytest.approx(measured.value, abs=0.1)
+
+
 def test_every_page_that_readme_points_to_exists() -> None:
     for target in re.findall(r"\]\((?!http)([^)#]+)\)", README):
         assert (ROOT / target).exists(), target
