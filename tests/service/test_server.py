@@ -6,6 +6,7 @@ import json
 import socket
 import time
 import urllib.error
+import urllib.parse
 import urllib.request
 from collections.abc import Iterator
 
@@ -57,7 +58,6 @@ def frames(connection: ClientConnection) -> Iterator[SurfaceFrame]:
     [
         ("nobody", {}, 404),
         ("nobody", {"origin": "https://evil.example"}, 403),
-        ("nobody", {"additional_headers": {"Host": "evil.example"}}, 421),
     ],
 )
 def test_a_socket_is_refused_with_a_status(
@@ -67,6 +67,14 @@ def test_a_socket_is_refused_with_a_status(
         stream(url, session_id, **options)
     assert refused.value.response.status_code == status
     assert "error" in json.loads(refused.value.response.body or b"{}")
+
+
+def test_a_socket_for_another_host_is_refused(url: str) -> None:
+    there = socket.create_connection(("127.0.0.1", urllib.parse.urlsplit(url).port))
+    address = "ws://evil.example/api/sessions/nobody/stream"
+    with there, pytest.raises(InvalidStatus) as refused:
+        connect(address, sock=there, subprotocols=[SUBPROTOCOL])
+    assert refused.value.response.status_code == 421
 
 
 def test_another_version_is_closed_with_a_reason(url: str, session: str) -> None:
