@@ -52,8 +52,10 @@ def cached_arrays(kind: str, key: str, build: Callable[[], Arrays]) -> Arrays:
     path = cache_folder() / f"{kind}-{key}.npz"
     stored = _read(path)
     if stored is not None:
-        return stored
-    arrays = build()
+        return {name: np.ascontiguousarray(array) for name, array in stored.items()}
+    # In one layout, whether built or read: kernels are compiled for a layout, and a second start
+    # would compile them again.
+    arrays = {name: np.ascontiguousarray(array) for name, array in build().items()}
     _write(path, arrays)
     return arrays
 
