@@ -75,6 +75,19 @@ export class Commands {
     this.viewer.emotion = '';
   }
 
+  /** What is held now, to be asked of another face: call it once that face has said hello. */
+  carried(): () => void {
+    const { emotion, emotionIntensity } = this.viewer;
+    const controls = JSON.parse(JSON.stringify(this.viewer.sliders.all())) as ReturnType<
+      ViewerState['sliders']['all']
+    >;
+    return () => {
+      this.viewer.sliders.take(controls);
+      if (emotion !== '') this.playEmotion(emotion, emotionIntensity);
+      this.send(replaceCommand({ layer: 'puppet', fade: RELEASE_FADE_SECONDS, ...controls }));
+    };
+  }
+
   private touch(): void {
     this.touchedAt = performance.now();
   }

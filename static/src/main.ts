@@ -36,6 +36,8 @@ let tick = 0;
 let frameSeen = false;
 /** The session to attach to; empty to open one. */
 let session = page.session ?? '';
+/** Asks of a new face what the one before it did, so that two rigs can be compared. */
+let resume: (() => void) | null = null;
 
 const element = (id: string): HTMLElement => document.getElementById(id)!;
 const scene = createScene();
@@ -110,6 +112,8 @@ async function welcome(hello: Hello): Promise<void> {
     // A live edit moves the session to another rig on the same surface; only a true hello may change it.
     if (hello.type === 'hello' && address !== surfaceAddress) await showFace(address);
     if (hello.rig !== rigId) await showRig(hello.rig, hello.type === 'hello');
+    resume?.();
+    resume = null;
   } catch (error) {
     viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
   }
@@ -210,6 +214,7 @@ const actions: Actions = {
     const left = session;
     session = '';
     viewer.rigName = rig;
+    resume = commands.carried();
     commands.forget();
     connection.connect();
     if (left !== '') api.closeSession(left).catch(() => undefined);
