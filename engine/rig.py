@@ -415,7 +415,7 @@ def _edited_muscle(muscle: Muscle, changes: Mapping[str, object]) -> Muscle:
     edits: dict[str, object] = {}
     for name, value in changes.items():
         if name not in allowed:
-            raise UnknownName(f"field of muscle {muscle.name}", name, allowed)
+            raise UnknownName("muscle field", name, allowed)
         edits[name] = _like(f"{muscle.name}.{name}", getattr(muscle, name), value)
     return replace(muscle, **edits)  # type: ignore[arg-type]
 
