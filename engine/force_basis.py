@@ -16,6 +16,7 @@ import numpy as np
 from .arrays import FloatArray
 from .dynamics import Pull
 from .head import Head
+from .head.anatomy import smoothstep
 from .jaw import JawHinge
 from .muscle import (
     MIDLINE_BLEND_MM,
@@ -115,13 +116,13 @@ def share_of(muscle: Muscle, points: FloatArray, jaw: FloatArray) -> FloatArray:
     """
     share = np.ones(len(points))
     if "." in muscle.name:
-        share *= _smoothstep(-MIDLINE_BLEND_MM, MIDLINE_BLEND_MM, points[:, 0])
+        share *= smoothstep(-MIDLINE_BLEND_MM, MIDLINE_BLEND_MM, points[:, 0])
     if isinstance(muscle, SphincterMuscle) and muscle.sector == "lower_lateral":
         # Whole, the ring also pulls the brow down and AU6 frowns.
-        share *= 1.0 - 0.88 * _smoothstep(-2.0, 8.0, points[:, 1])
-        share *= 0.15 + 0.85 * _smoothstep(12.0, 26.0, points[:, 0])
+        share *= 1.0 - 0.88 * smoothstep(-2.0, 8.0, points[:, 1])
+        share *= 0.15 + 0.85 * smoothstep(12.0, 26.0, points[:, 0])
         # The orbital part lies outside the lids; pulling on them too made AU6 bistable.
-        share *= _smoothstep(*LID_EDGE, muscle.radius_at(points))
+        share *= smoothstep(*LID_EDGE, muscle.radius_at(points))
     acts_on = "skin" if isinstance(muscle, LidMuscle) else muscle.acts_on
     if acts_on == "upper_lip":
         share *= 1.0 - jaw
@@ -295,8 +296,3 @@ def _smooth(tissue: TissueModel, force: FloatArray, passes: int) -> FloatArray:
         after = math.sqrt((smoothed.sum(axis=0) ** 2).sum())
         force = smoothed * (before / after) if before > 1.0e-3 and after > 0.0 else smoothed
     return force
-
-
-def _smoothstep(low: float, high: float, x: FloatArray) -> FloatArray:
-    t = np.clip((x - low) / (high - low), 0.0, 1.0)
-    return np.asarray(t * t * (3.0 - 2.0 * t))

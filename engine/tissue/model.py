@@ -20,6 +20,7 @@ from ..dynamics import (
     static_forces,
 )
 from ..head import Head
+from ..head.anatomy import smoothstep
 from .contact import TARSAL_RINGS, Lids, contacts_of, lids_of, ring_and_spoke
 from .layers import Layers, Sheet, sheet_of, stack_layers
 from .parameters import TissueParameters
@@ -286,7 +287,7 @@ def _pressure(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> 
     volume = column_volumes(middle, layers.bone, quads)
     area = sheet.polygon_area[sheet.is_quad]
     quad_depth = layers.depth[quads].mean(axis=1)
-    fat = _smoothstep(*FAT_DEPTH_MM, quad_depth)
+    fat = smoothstep(*FAT_DEPTH_MM, quad_depth)
     held = np.array([ring_and_spoke(name)[0] in PRESSURE_FREE_RINGS for name in head.names[:n]])
     sound = (volume > LEAST_COLUMN_SHARE * area * quad_depth) & ~held[quads].any(axis=1)
     modulus = p.fat_pressure * fat * area / p.reference_length**2
@@ -310,8 +311,3 @@ def _held(head: Head) -> BoolArray:
         [ring_and_spoke(name)[0] in TARSAL_RINGS for name in head.names[: head.sheet_count]]
     )
     return head.fixed | tarsal if head.eyes else head.fixed.copy()
-
-
-def _smoothstep(low: float, high: float, x: FloatArray) -> FloatArray:
-    t = np.clip((x - low) / (high - low), 0.0, 1.0)
-    return np.asarray(t * t * (3.0 - 2.0 * t))
