@@ -38,6 +38,7 @@ class Part:
         follows: What it moves with: "skull", "jaw", "eye.L", "eye.R" or "skin".
         roots: Drawn vertex that each vertex rides, shape (v,); only when it follows the skin.
         hair: Cropped-hair mask in 0..1, shape (v,); only where a part is skin that hair grows on.
+        uvs: Where each vertex lies on its material's texture, origin top left, shape (v, 2).
     """
 
     name: str
@@ -49,6 +50,7 @@ class Part:
     follows: str
     roots: IntArray | None = None
     hair: FloatArray | None = None
+    uvs: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

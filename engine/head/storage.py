@@ -20,7 +20,7 @@ HEAD_ARRAYS = (
 )  # fmt: skip
 DRAWN_ARRAYS = ("vertices", "normals", "triangles", "colors", "hair", "regions")
 LID_ARRAYS = ("vertices", "eyes", "clearance")
-PART_ARRAYS = ("vertices", "normals", "triangles", "colors", "roots", "hair")
+PART_ARRAYS = ("vertices", "normals", "triangles", "colors", "roots", "hair", "uvs")
 
 
 def source_key(*parts: object) -> str:

@@ -1,0 +1,201 @@
+"""A recipe: what a person looks like, in the terms of anthropometry.
+
+Shape is given in standard deviations from the norm of the recipe's sex (Farkas, "Anthropometry of
+the Head and Face", 1994), so that 0 is the typical face and ±2 holds nineteen people of twenty.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+
+from ..errors import InvalidValue, UnknownName
+
+SEXES: Mapping[str, float] = {"female": 0.0, "male": 1.0}
+SKIN_TONES: Mapping[str, float] = {
+    "very_light": 0.0,
+    "light": 0.2,
+    "intermediate": 0.4,
+    "tan": 0.6,
+    "brown": 0.8,
+    "dark": 1.0,
+}
+"""Six classes of skin by its individual typology angle (Chardon et al., 1991), evenly spaced."""
+UNDERTONES: Mapping[str, float] = {"cool": -1.0, "neutral": 0.0, "warm": 1.0}
+EYE_COLORS = ("blue", "gray", "green", "hazel", "amber", "brown", "dark_brown")
+HAIR_COLORS = (
+    "black",
+    "dark_brown",
+    "brown",
+    "auburn",
+    "red",
+    "dark_blond",
+    "blond",
+    "gray",
+    "white",
+)
+HAIR_STYLES = ("bald", "buzz", "crop", "short", "bob", "curly", "receding")
+
+LIMITS: Mapping[str, tuple[float, float]] = {
+    "sex": (0.0, 1.0),
+    "age": (18.0, 90.0),
+    **dict.fromkeys(
+        (
+            "face_width",
+            "face_height",
+            "forehead_height",
+            "brow_ridge",
+            "eye_spacing",
+            "eye_size",
+            "nose_length",
+            "nose_width",
+            "nose_projection",
+            "mouth_width",
+            "lip_fullness",
+            "cheekbones",
+            "jaw_width",
+            "chin_projection",
+            "ear_size",
+            "weight",
+        ),
+        (-3.0, 3.0),
+    ),
+    "skin": (0.0, 1.0),
+    "undertone": (-1.0, 1.0),
+    "freckles": (0.0, 1.0),
+    "stubble": (0.0, 1.0),
+    "grayness": (0.0, 1.0),
+    "asymmetry": (0.0, 2.0),
+}
+_WORDS: Mapping[str, Mapping[str, float]] = {
+    "sex": SEXES,
+    "skin": SKIN_TONES,
+    "undertone": UNDERTONES,
+}
+_CHOICES: Mapping[str, tuple[str, ...]] = {
+    "eye_color": EYE_COLORS,
+    "hair_color": HAIR_COLORS,
+    "hair_style": HAIR_STYLES,
+}
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """One person's head. The defaults are the built-in standard head.
+
+    Attributes:
+        sex: 0 female to 1 male; also "female" or "male".
+        age: Years, 18 to 90; changes shape, skin and tissue.
+        face_width: Width over the cheekbones (zy-zy), standard deviations; so are all to `weight`.
+        face_height: Root of the nose to chin (n-gn).
+        forehead_height: Hairline to root of the nose (tr-n).
+        brow_ridge: How far glabella and brows stand out.
+        eye_spacing: Between the inner corners of the eyes (en-en).
+        eye_size: Length of the eye fissure (en-ex).
+        nose_length: n-sn.
+        nose_width: al-al.
+        nose_projection: sn-prn.
+        mouth_width: ch-ch.
+        lip_fullness: Height of the red of both lips (ls-sto, sto-li).
+        cheekbones: How far the cheekbones stand out forward.
+        jaw_width: Over the angles of the jaw (go-go).
+        chin_projection: How far the chin stands out.
+        ear_size: Length of the ear (sa-sba).
+        weight: Fullness of cheek, jowl and neck.
+        skin: Tone, 0 very light to 1 dark; also a name of `SKIN_TONES`.
+        undertone: -1 cool (pink) to 1 warm (golden); also "cool", "neutral", "warm".
+        freckles: 0 none to 1 many.
+        stubble: Beard shadow, 0 shaven close to 1 three days' growth.
+        eye_color: One of `EYE_COLORS`.
+        hair_color: One of `HAIR_COLORS`, before it greys.
+        hair_style: One of `HAIR_STYLES`.
+        grayness: Share of grey hair, 0 to 1.
+        asymmetry: Natural difference of the two sides, seen only; 0 none, 1 usual.
+        seed: Chooses the small things: freckles, pores, the sides' difference.
+    """
+
+    sex: float = 1.0
+    age: float = 30.0
+    face_width: float = 0.0
+    face_height: float = 0.0
+    forehead_height: float = 0.0
+    brow_ridge: float = 0.0
+    eye_spacing: float = 0.0
+    eye_size: float = 0.0
+    nose_length: float = 0.0
+    nose_width: float = 0.0
+    nose_projection: float = 0.0
+    mouth_width: float = 0.0
+    lip_fullness: float = 0.0
+    cheekbones: float = 0.0
+    jaw_width: float = 0.0
+    chin_projection: float = 0.0
+    ear_size: float = 0.0
+    weight: float = 0.0
+    skin: float = 0.25
+    undertone: float = 0.1
+    freckles: float = 0.15
+    stubble: float = 0.35
+    eye_color: str = "hazel"
+    hair_color: str = "dark_brown"
+    hair_style: str = "crop"
+    grayness: float = 0.0
+    asymmetry: float = 1.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name, (low, high) in LIMITS.items():
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise InvalidValue(f"recipe {name} is {value!r}; expected a number")
+            if not (math.isfinite(value) and low <= value <= high):
+                raise InvalidValue(
+                    f"recipe {name} is {value:g}; it must lie between {low:g} and {high:g}"
+                )
+        for name, known in _CHOICES.items():
+            if getattr(self, name) not in known:
+                raise UnknownName(f"recipe {name}", str(getattr(self, name)), known)
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int):
+            raise InvalidValue(f"recipe seed is {self.seed!r}; expected a whole number")
+        if not 0 <= self.seed < 2**32:
+            raise InvalidValue(f"recipe seed is {self.seed}; it must lie between 0 and 2^32 - 1")
+
+    @classmethod
+    def of(cls, values: Mapping[str, object]) -> Recipe:
+        """Return the recipe that plain data gives; what is not named keeps its default.
+
+        Args:
+            values: By attribute; words are understood where an attribute has them.
+
+        Raises:
+            UnknownName: For an attribute or word that does not exist.
+            InvalidValue: For a number outside its range.
+        """
+        known = [f.name for f in fields(cls)]
+        given: dict[str, object] = {}
+        for name, value in values.items():
+            if name not in known:
+                raise UnknownName("recipe attribute", name, known)
+            given[name] = _number(name, value)
+        return cls(**given)  # type: ignore[arg-type]
+
+    def to_json(self) -> dict[str, object]:
+        """Return every attribute as plain data."""
+        return asdict(self)
+
+
+def _number(name: str, value: object) -> object:
+    """Return the number that stands for a word; a number in one form, so that 60 is 60.0."""
+    words = _WORDS.get(name)
+    if words is not None and isinstance(value, str):
+        if value not in words:
+            raise UnknownName(f"recipe {name}", value, words)
+        return words[value]
+    if name in LIMITS and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    return value
+
+
+STANDARD = Recipe()
+"""The built-in head."""
