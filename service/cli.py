@@ -143,37 +143,47 @@ def clip(
 
 @app.command()
 def sheet(
-    output: Annotated[Path, typer.Option("-o", "--output", help="PNG file to write.")],
-    rig: Annotated[str, typer.Option(help="Rig to show.")] = "standard",
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", help="Picture to write; a folder takes one for each."),
+    ],
+    rig: Annotated[str, typer.Option(help="Rigs to show, comma separated.")] = "standard",
+    people: Annotated[
+        bool, typer.Option("--people", help="Show everyone who comes along.")
+    ] = False,
     columns: Annotated[int, typer.Option(min=1, max=20, help="Pictures in a row.")] = 6,
     size: Annotated[int, typer.Option(min=64, max=1024, help="Side of a picture, pixels.")] = 320,
     view: Annotated[
-        str, typer.Option(help="Where it is seen from: front, three-quarter or profile.")
+        str,
+        typer.Option(help="Views, comma separated: front, three-quarter, profile, degrees."),
     ] = "three-quarter",
     only: Annotated[
-        str, typer.Option(help="Names to show, comma separated: AU12,happiness,6C+12D.")
+        str, typer.Option(help="Names to show, comma separated: AU12,happiness,rest,6C+12D.")
     ] = "",
 ) -> None:
     """Draw every action unit and emotion, as the viewer shows them, on one picture."""
-    from .sheet import SheetRefused, draw_sheet
+    from .sheet import Plan, SheetRefused, draw_sheet
 
-    names = tuple(name.strip() for name in only.split(",") if name.strip())
+    plan = Plan(
+        rigs=() if people else _words(rig), views=_words(view), only=_words(only), size=size
+    )
     progress = Progress(TextColumn("{task.description}"), BarColumn(), console=_console)
     try:
         with progress:
             task = progress.add_task("starting", total=1.0)
             count = draw_sheet(
                 output,
-                rig=rig,
+                plan,
                 columns=columns,
-                size=size,
-                view=view,
-                only=names,
                 show=lambda stage, share: progress.update(task, description=stage, completed=share),
             )
     except SheetRefused as refused:
         _refuse(str(refused))
     _console.print(f"{count} pictures in {escape(str(output))}", soft_wrap=True)
+
+
+def _words(listed: str) -> tuple[str, ...]:
+    return tuple(word.strip() for word in listed.split(",") if word.strip())
 
 
 @app.command()

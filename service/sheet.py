@@ -1,10 +1,11 @@
-"""Contact sheets: every action unit and emotion, as the viewer draws them, on one picture."""
+"""Contact sheets: people, action units and emotions, as the viewer draws them, on one picture."""
 
 from __future__ import annotations
 
 import io
+import re
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
 
 Show = Callable[[str, float], None]
 VIEWS = ("front", "three-quarter", "profile")
+PICTURES = (".png", ".jpg", ".jpeg", ".webp")
 _TIMEOUT_MS = 60_000
+_NO_CONTENT = 204
 _LABEL_SHARE = 0.09
 _ROOM = 1.34
 """Side of the page against a picture's: the page frames the whole head, a picture its face."""
@@ -29,7 +32,10 @@ _ABOVE = 0.12
 """Share of the page above a picture: the hair."""
 _BACKGROUND = (24, 25, 28)
 _INK = (226, 226, 222)
-_SETTLED = "t => window.__viewer.ready && window.__viewer.asleep && window.__viewer.tick > t"
+_QUALITY = 88
+"""Of JPEG and WebP pictures."""
+_SETTLED = """t => window.__viewer.ready && window.__viewer.textured !== false
+    && window.__viewer.asleep && window.__viewer.tick > t"""
 
 
 class SheetRefused(Exception):
@@ -51,32 +57,42 @@ class Pose:
     emotion: str | None = None
 
 
-def draw_sheet(
-    output: Path,
-    *,
-    rig: str,
-    columns: int,
-    size: int,
-    view: str,
-    only: Sequence[str],
-    show: Show,
-) -> int:
+@dataclass(frozen=True)
+class Plan:
+    """What a sheet shows: each rig in each pose from each view.
+
+    Attributes:
+        rigs: Names or ids; empty for all the people that come with the service.
+        views: Of `VIEWS`, or degrees to the side such as "25" and "-50".
+        only: Labels of the poses; all when empty.
+        size: Side of a picture [pixels].
+    """
+
+    rigs: Sequence[str]
+    views: Sequence[str]
+    only: Sequence[str]
+    size: int
+
+
+def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
     """Write the sheet and return how many pictures it has.
 
     Args:
-        output: PNG file.
-        rig: Name or id of a rig.
+        output: A file of one of `PICTURES`, or a folder that takes a file for each picture.
+        plan: What to draw.
         columns: Pictures in a row.
-        size: Side of a picture [pixels].
-        view: One of `VIEWS`.
-        only: Labels to draw; all when empty.
         show: Told what is being done, and the share of the work done.
 
     Raises:
         SheetRefused: If the viewer or Chromium is missing, or a name is not known.
     """
-    if view not in VIEWS:
-        raise SheetRefused(f"There is no view {view!r}; it is one of {', '.join(VIEWS)}.")
+    for view in plan.views:
+        if view not in VIEWS and not re.fullmatch(r"-?\d{1,3}", view):
+            raise SheetRefused(
+                f"There is no view {view!r}; it is one of {', '.join(VIEWS)}, or degrees."
+            )
+    if not output.is_dir() and output.suffix.lower() not in PICTURES:
+        raise SheetRefused(f"{output} is no folder, and no file of {', '.join(PICTURES)}.")
     if not output.resolve().parent.is_dir():
         raise SheetRefused(f"The folder {output.parent} does not exist; make it first.")
     if not (Settings().viewer_dir / "index.html").is_file():
@@ -85,13 +101,23 @@ def draw_sheet(
         settings = Settings(data_dir=Path(folder), host="127.0.0.1", api_keys=())
         try:
             with running(create_app(settings), settings) as url, chromium() as browser:
-                side = round(size * _ROOM)
+                side = round(plan.size * _ROOM)
                 page = browser.new_page(viewport={"width": side, "height": side})
-                pictures = _photograph(page, url, rig=rig, view=view, only=only, show=show)
+                pictures = list(_photograph(page, url, plan, show))
         except NoBrowser as error:
             raise SheetRefused(str(error)) from error
-    tile(pictures, columns=columns, size=size).save(output)
+    if output.is_dir():
+        for label, png in pictures:
+            picture = Image.open(io.BytesIO(png)).convert("RGB").resize((plan.size, plan.size))
+            picture.save(output / f"{_slug(label)}.jpg", quality=_QUALITY)
+    else:
+        tile(pictures, columns=columns, size=plan.size).save(output, quality=_QUALITY)
     return len(pictures)
+
+
+def _slug(label: str) -> str:
+    """Return a label as the stem of a file's name."""
+    return re.sub(r"[^a-z0-9]+", "-", label.lower()).strip("-")
 
 
 def tile(pictures: Sequence[tuple[str, bytes]], *, columns: int, size: int) -> Image.Image:
@@ -139,26 +165,28 @@ def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
     return [poses.get(words.get(name, name), Pose(name, {"facs": name})) for name in only]
 
 
-def _photograph(
-    page: Page, url: str, *, rig: str, view: str, only: Sequence[str], show: Show
-) -> list[tuple[str, bytes]]:
-    """Put each pose on a face and take its picture once it has settled."""
-    show("building the rig", 0.0)
+def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[str, bytes]]:
+    """Put each pose on each face, and take its pictures once it has settled."""
     page.set_default_timeout(_TIMEOUT_MS)
-    described = _call(page, "GET", f"{url}/api/rigs/{rig}")
-    poses = poses_of(described, only)
-    session = _call(page, "POST", f"{url}/api/sessions", {"rig": rig})["id"]
-    show("opening the viewer", 0.0)
-    page.goto(f"{url}/?session={session}&bare=1&view={view}&dpr=1")
-    page.wait_for_function(_SETTLED, arg=-1)
-    pictures = []
-    for index, pose in enumerate(poses):
-        show(pose.label, index / len(poses))
-        tick = _command(page, f"{url}/api/sessions/{session}", pose)
-        page.wait_for_function(_SETTLED, arg=tick)
-        page.evaluate("() => window.__viewer.render()")
-        pictures.append((pose.label, page.screenshot(clip=_face_of(page))))
-    return pictures
+    rigs = plan.rigs or [person["name"] for person in _call(page, "GET", f"{url}/api/people")]
+    for number, rig in enumerate(rigs):
+        show(f"building {rig}", number / len(rigs))
+        poses = poses_of(_call(page, "GET", f"{url}/api/rigs/{rig}"), plan.only)
+        session = _call(page, "POST", f"{url}/api/sessions", {"rig": rig})["id"]
+        page.goto(f"{url}/?session={session}&bare=1&dpr=1")
+        page.wait_for_function(_SETTLED, arg=-1)
+        for index, pose in enumerate(poses):
+            show(f"{rig}: {pose.label}", (number + index / len(poses)) / len(rigs))
+            tick = _command(page, f"{url}/api/sessions/{session}", pose)
+            page.wait_for_function(_SETTLED, arg=tick)
+            for view in plan.views:
+                page.evaluate("view => window.__viewer.setView(view)", view)
+                page.evaluate("() => window.__viewer.render()")
+                named = [rig] * (len(rigs) > 1) + [view] * (len(plan.views) > 1)
+                if len(poses) > 1 or not named:
+                    named.insert(len(rigs) > 1, pose.label)
+                yield " ".join(named), page.screenshot(clip=_face_of(page))
+        _call(page, "DELETE", f"{url}/api/sessions/{session}")
 
 
 def _face_of(page: Page) -> FloatRect:
@@ -179,9 +207,9 @@ def _command(page: Page, session: str, pose: Pose) -> int:
     return int(max(emptied["tick"], answer["tick"]))
 
 
-def _call(page: Page, method: str, url: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+def _call(page: Page, method: str, url: str, body: dict[str, Any] | None = None) -> Any:
     answer = page.request.fetch(url, method=method, data=body, timeout=_TIMEOUT_MS)
-    content: dict[str, Any] = answer.json()
+    content: Any = answer.json() if answer.status != _NO_CONTENT else None
     if not answer.ok:
         raise SheetRefused(f"This cannot be drawn: {content['message']}.")
     return content

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
+import pytest
 from PIL import Image
 
-from service.sheet import _fitting, poses_of, tile
+from service.sheet import Plan, SheetRefused, _fitting, _slug, draw_sheet, poses_of, tile
 
 RIG = {
     "action_units": [{"name": "AU1", "title": "Inner brow raiser"}],
@@ -50,3 +52,15 @@ def test_a_long_label_is_set_smaller_and_not_cut() -> None:
     short, long = _fitting("rest", 40, 300), _fitting("fear 1E+2C+4C+5E+20D+25C+26A", 40, 300)
     assert short.getlength("rest") > long.getlength("rest")
     assert long.getlength("fear 1E+2C+4C+5E+20D+25C+26A") <= 300
+
+
+def test_a_sheet_refuses_what_it_cannot_write(tmp_path: Path) -> None:
+    plan = Plan(rigs=("standard",), views=("front",), only=(), size=64)
+    with pytest.raises(SheetRefused, match=r"no file of \.png"):
+        draw_sheet(tmp_path / "sheet.txt", plan, columns=1, show=lambda *_: None)
+    with pytest.raises(SheetRefused, match="does not exist"):
+        draw_sheet(tmp_path / "none" / "a.png", plan, columns=1, show=lambda *_: None)
+
+
+def test_a_picture_in_a_folder_is_named_after_its_label() -> None:
+    assert _slug("fear 1E+2C") == "fear-1e-2c"
