@@ -19,12 +19,13 @@ from .errors import (
 from .facs import LETTERS, ActionUnit, Term, format_facs, parse_facs
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
+from .head import LEVELS, Person, Recipe, people
 from .jaw import JawHinge
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import measure_units
 from .mixing import hold_units, unit_key
 from .quality import judge
-from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig
+from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig, rig_from_recipe
 from .simulator import FaceState, Simulator
 from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
 
@@ -33,6 +34,7 @@ __all__ = [
     "LANDMARKS_68",
     "LAYERS",
     "LETTERS",
+    "LEVELS",
     "MODEL_CHOICES",
     "TICKS_PER_SECOND",
     "ActionUnit",
@@ -50,7 +52,9 @@ __all__ = [
     "JawHinge",
     "Keyframe",
     "Model",
+    "Person",
     "Pose",
+    "Recipe",
     "Rig",
     "Simulator",
     "Term",
@@ -67,7 +71,9 @@ __all__ = [
     "landmarks_68",
     "measure_units",
     "parse_facs",
+    "people",
     "record",
+    "rig_from_recipe",
     "rig_to_glb",
     "settled",
     "settled_units",

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from .channels import GROUPS, LIMITS, Channels
 from .emotion import Emotion, find_emotion
 from .errors import EngineError, InvalidValue, UnknownName
 from .facs import ActionUnit, parse_facs, split_side
-from .head import Head, paper_head, standard_head
+from .head import LEVELS, STANDARD, Head, Recipe, paper_head, people, person_head, tissue_of_life
 from .jaw import JawHinge
 from .muscle import LidMuscle, Muscle, SphincterMuscle, mirrored
 from .rig_data import load_action_units, load_emotions, load_muscles
@@ -109,6 +110,9 @@ class Rig:
         emotions: By name.
         jaw: Its hinge.
         model: The forms of the physics it runs unless a session says otherwise.
+        recipe: What the person looks like; None for the paper's mask and heads from files.
+        content_id: Its id where another rig of the same content gave it: the level of detail of
+            what is drawn changes no id.
     """
 
     name: str
@@ -119,10 +123,14 @@ class Rig:
     emotions: Mapping[str, Emotion]
     jaw: JawHinge = field(default_factory=JawHinge)
     model: Model = field(default_factory=Model)
+    recipe: Recipe | None = None
+    content_id: str | None = None
 
     @cached_property
     def id(self) -> str:
         """Hash of the rig's content: the same face has the same id everywhere."""
+        if self.content_id is not None:
+            return self.content_id
         head = self.head
         return content_key(
             head.points,
@@ -137,6 +145,7 @@ class Rig:
             sorted(self.emotions.items()),
             self.jaw,
             self.model,
+            self.recipe,
         )[:16]
 
     @cached_property
@@ -232,9 +241,24 @@ class Rig:
                 _check_range(name, value, 0.0, 3600.0)
         return warnings
 
+    def at_level(self, level: str) -> Rig:
+        """Return this rig with its skin drawn at a level of detail: "low", "medium" or "high".
+
+        It is the same face and keeps its id. A rig without a recipe has one level only.
+
+        Raises:
+            UnknownName: There is no such level.
+        """
+        if level not in LEVELS:
+            raise UnknownName("level of detail", level, LEVELS)
+        if self.recipe is None:
+            return self
+        return replace(self, head=person_head(self.recipe, level), content_id=self.id)
+
     def derive(
         self,
         *,
+        recipe: Mapping[str, object] | None = None,
         tissue: Mapping[str, object] | None = None,
         muscles: Mapping[str, Mapping[str, object]] | None = None,
         action_units: Mapping[str, Mapping[str, object]] | None = None,
@@ -244,6 +268,7 @@ class Rig:
         """Return this rig with edits; the same edits give the same id.
 
         Args:
+            recipe: What changes of the person, by attribute; earlier edits stay.
             tissue: Tissue parameters by name.
             muscles: By full muscle name, the fields to change.
             action_units: By name, `{"muscles": {"zygomatic_major": 1.0}, "jaw": 0, "title": …}`.
@@ -254,6 +279,14 @@ class Rig:
             UnknownName: For anything named that is not there.
             InvalidValue: For a value outside its limits.
         """
+        if recipe:
+            return self._as_person(recipe).derive(
+                tissue=tissue,
+                muscles=muscles,
+                action_units=action_units,
+                emotions=emotions,
+                name=name,
+            )
         edited = tuple(
             _edited_muscle(muscle, (muscles or {}).get(muscle.name, {})) for muscle in self.muscles
         )
@@ -268,6 +301,7 @@ class Rig:
             parameters=self.parameters.edited(tissue or {}),
             muscles=edited,
             action_units=units,
+            content_id=None,
         )
         labels = dict(self.emotions)
         for label, emotion_spec in (emotions or {}).items():
@@ -281,6 +315,7 @@ class Rig:
             "id": self.id,
             "name": self.name,
             "model": asdict(self.model),
+            "recipe": self.recipe.to_json() if self.recipe else None,
             "muscles": [{**asdict(muscle), "activation": [0.0, 1.0]} for muscle in self.muscles],
             "action_units": [
                 {**asdict(unit), "range": [0.0, 1.0]} for unit in self.action_units.values()
@@ -299,6 +334,32 @@ class Rig:
                 "drawn_triangles": len(head.drawn.triangles),
             },
         }
+
+    def _as_person(self, changes: Mapping[str, object]) -> Rig:
+        """Return another person with what was edited here."""
+        if self.recipe is None:
+            raise InvalidValue(
+                f"the {self.name} rig takes no recipe; its face is always the same. "
+                "Derive from 'standard' or from a person"
+            )
+        recipe = Recipe.of(changes, self.recipe)
+        before = rig_from_recipe(self.recipe)
+        after = rig_from_recipe(recipe, name=self.name)
+        muscles = tuple(
+            replace(new, **_differences(now, old))
+            for now, old, new in zip(self.muscles, before.muscles, after.muscles, strict=True)
+        )
+        return replace(
+            after,
+            parameters=replace(
+                after.parameters, **_differences(self.parameters, before.parameters)
+            ),
+            muscles=muscles,
+            action_units=self.action_units,
+            emotions=self.emotions,
+            jaw=self.jaw,
+            model=self.model,
+        )
 
     def _unit_vector(self, unit: ActionUnit, side: str) -> FloatArray:
         vector = np.zeros(self.channels.count)
@@ -364,19 +425,39 @@ class Rig:
 
 @lru_cache(maxsize=4)
 def builtin_rig(name: str) -> Rig:
-    """Return a built-in rig.
+    """Return a built-in rig, or that of a person.
 
     Raises:
-        UnknownName: If `name` is not one of `BUILTIN_RIGS`.
+        UnknownName: If `name` is not one of `BUILTIN_RIGS` or of the people.
     """
     if name == "standard":
-        head = standard_head()
-        return rig_from_head(head, parameters=TissueParameters())
+        return rig_from_recipe(STANDARD, name="standard")
+    if name in people():
+        return rig_from_recipe(people()[name].recipe, name=name)
     if name == "paper":
         rig = rig_from_head(paper_head(), parameters=PAPER_PARAMETERS)
         literal = tuple(_as_in_the_paper(muscle) for muscle in rig.muscles)
         return replace(rig, muscles=literal, model=PAPER_MODEL)
-    raise UnknownName("rig", name, BUILTIN_RIGS)
+    raise UnknownName("rig", name, (*BUILTIN_RIGS, *people()))
+
+
+def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high") -> Rig:
+    """Return the rig of the person that a recipe describes: head, tissue, muscles.
+
+    Args:
+        recipe: The person.
+        name: Of the rig.
+        level: Detail of the drawn skin; changes no id.
+
+    Raises:
+        UnknownName: There is no such level.
+    """
+    rig = rig_from_head(
+        person_head(recipe),
+        parameters=TissueParameters().edited(tissue_of_life(recipe)),
+    )
+    rig = replace(rig, name=name, recipe=recipe)
+    return rig if level == "high" else rig.at_level(level)
 
 
 def rig_from_head(head: Head, *, parameters: TissueParameters) -> Rig:
@@ -395,6 +476,12 @@ def rig_from_head(head: Head, *, parameters: TissueParameters) -> Rig:
         action_units=load_action_units(),
         emotions=load_emotions(),
     )
+
+
+def _differences(now: Any, old: Any) -> dict[str, Any]:
+    """Return the fields of one dataclass that differ from another's."""
+    pairs = {f.name: (getattr(now, f.name), getattr(old, f.name)) for f in fields(now)}
+    return {name: value for name, (value, before) in pairs.items() if value != before}
 
 
 def _as_in_the_paper(muscle: Muscle) -> Muscle:

@@ -150,7 +150,9 @@ class NewRig(Body):
 
     base: Name = "standard"
     name: Name | None = None
-    recipe: Changes | None = None
+    recipe: Changes | None = Field(
+        default=None, examples=[{"age": 60, "skin": "dark"}], description="What the person is like."
+    )
     tissue: Changes | None = None
     muscles: Changes | None = None
     action_units: Changes | None = None
@@ -170,6 +172,9 @@ class NewClip(Body):
 
     rig: Name = "standard"
     fps: Annotated[int, Field(ge=1, le=60)] = 30
+    level: Literal["low", "medium", "high"] = Field(
+        default="high", description="Detail of the drawn skin."
+    )
     timeline: list[KeyframeBody]
     duration: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = None
     model: ModelChoice = ModelChoice()

@@ -203,7 +203,7 @@ def bench(
 
 @app.command()
 def measure(
-    rig: Annotated[str, typer.Option(help="Rig to measure: standard or paper.")] = "standard",
+    rig: Annotated[str, typer.Option(help="Rig to measure, or a person.")] = "standard",
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Measure the action units against human motion, and how well the tissue behaves."""

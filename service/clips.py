@@ -7,7 +7,7 @@ import secrets
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -229,7 +229,8 @@ class Clips:
             cancelled=job.cancelled.is_set,
         )
         simulated = time.perf_counter()
-        size = await asyncio.to_thread(self._write, clip, rendered, timeline, job)
+        drawn = replace(rendered, rig=rig.at_level(request.level))
+        size = await asyncio.to_thread(self._write, clip, drawn, timeline, job)
         ended = time.perf_counter()
         return {
             "frames": len(rendered.displacements),

@@ -18,9 +18,12 @@ import structlog
 
 from engine import (
     BUILTIN_RIGS,
+    LEVELS,
     EngineError,
     Rig,
+    UnknownName,
     builtin_rig,
+    people,
     rig_to_glb,
     surface_to_glb,
 )
@@ -34,7 +37,31 @@ _RIGS_IN_MEMORY = 64
 _FILES_IN_MEMORY = 16
 _PASSING_SECONDS = 60.0
 _UNIT_FIELDS = {"muscles", "jaw", "title", "region"}
-_CHANGES = ("tissue", "muscles", "action_units", "emotions", "name")
+_CHANGES = ("recipe", "tissue", "muscles", "action_units", "emotions", "name")
+
+
+FULL = "high"
+"""The level of detail of what is asked for without one."""
+_TITLES = {
+    "standard": "the built-in head",
+    "paper": "the paper's own mesh and constants, for comparison",
+}
+
+
+def tag_of(rig: Rig, level: str) -> str:
+    """Return what names a rig's file at a level of detail.
+
+    Raises:
+        Unprocessable: If there is no such level.
+    """
+    if level not in LEVELS:
+        raise refused_by_engine(UnknownName("level of detail", level, LEVELS))
+    return rig.id if level == FULL else f"{rig.id}-{level}"
+
+
+def _named() -> tuple[str, ...]:
+    """Return the names of the rigs that come with the engine."""
+    return (*BUILTIN_RIGS, *people())
 
 
 class Rigs:
@@ -57,23 +84,30 @@ class Rigs:
         self._files_pool.shutdown(wait=True, cancel_futures=True)
 
     async def get(self, name: str) -> Rig:
-        """Return the rig of that name (`standard`) or id.
+        """Return the rig of that name (`standard`, `amara`) or id, also one that it had before.
 
         Raises:
             NotFound: If there is none.
         """
         name = self._names.get(name, name)
-        if name in BUILTIN_RIGS:
+        if name in _named():
             return await self._built_in(name)
         row = self._store.rig(name)
         if row is None:
+            before = self._store.name_of_rig(name)
+            if before is not None and before != name:
+                return await self.get(before)
             for built_in in BUILTIN_RIGS:  # An id may be that of a rig not built so far.
                 rig = await self._built_in(built_in)
                 if rig.id == name:
                     return rig
             raise self._unknown(name)
         base = await self.get(row.base)
-        return await self._rigs.get(name, lambda: _derive(base, row.changes))
+        rig = await self._rigs.get(name, lambda: _derive(base, row.changes))
+        if rig.id not in self._names and rig.id != name:  # It was derived by another engine.
+            self._store.name_rig(rig.id, name)
+            self._names[rig.id] = name
+        return rig
 
     async def derive(
         self, base: Rig, changes: Mapping[str, Any], *, passing: bool = False
@@ -92,16 +126,18 @@ class Rigs:
         """
         changes = {key: value for key, value in changes.items() if value is not None}
         rig = await self._rigs.get(_key(base.id, changes), lambda: _derive(base, changes))
-        if self._names.get(rig.id, rig.id) in BUILTIN_RIGS:
+        if self._names.get(rig.id, rig.id) in _named():
             return rig, False
         if self._store.rig(rig.id):
             if not passing:
                 self._store.keep_rig(rig.id)
             return rig, False
         self._make_room()
-        # A row says how its rig comes from a built-in one, so that none depends on another row.
-        before = self._store.rig(base.id)
-        root, all_changes = base.id, changes
+        # A row says how its rig comes from one that has a name, so that none depends on another
+        # row, nor on the ids that this engine gives.
+        known = self._names.get(base.id, base.id)
+        before = self._store.rig(known)
+        root, all_changes = known, changes
         if before is not None:
             root, all_changes = before.base, merged_changes(before.changes, changes)
         self._store.add_rig(rig.id, base=root, changes=all_changes, passing=passing)
@@ -113,19 +149,31 @@ class Rigs:
         lines: list[dict[str, object]] = []
         for name in BUILTIN_RIGS:
             rig = await self._built_in(name)
-            lines.append({"id": rig.id, "name": name, "base": None})
+            lines.append({"id": rig.id, "name": name, "base": None, "title": _TITLES[name]})
+        ids = {name: rig_id for rig_id, name in self._names.items()}
+        for person in people().values():  # Named without being built: that takes half a second.
+            lines.append(
+                {
+                    "id": ids.get(person.name),
+                    "name": person.name,
+                    "base": None,
+                    "title": person.title,
+                }
+            )
         for row in self._store.rigs():
             name = str(row.changes.get("name") or row.id)
             lines.append({"id": row.id, "name": name, "base": row.base})
         return lines
 
-    async def glb(self, rig: Rig) -> bytes:
+    async def glb(self, rig: Rig, level: str = FULL) -> bytes:
         """Return the rest head with its action units as morph targets."""
-        return await self._file(f"rig-{rig.id}", lambda: rig_to_glb(rig))
+        key = f"rig-{tag_of(rig, level)}"
+        return await self._file(key, lambda: rig_to_glb(rig.at_level(level)))
 
-    async def surface(self, rig: Rig) -> bytes:
+    async def surface(self, rig: Rig, level: str = FULL) -> bytes:
         """Return the tissue surface and its map to the drawn surface."""
-        return await self._file(f"surface-{rig.id}", lambda: surface_to_glb(rig))
+        key = f"surface-{tag_of(rig, level)}"
+        return await self._file(key, lambda: surface_to_glb(rig.at_level(level)))
 
     async def file(self, key: str, make: Callable[[], bytes]) -> bytes:
         """Return another file that depends on its `key` alone."""
@@ -140,7 +188,9 @@ class Rigs:
 
     async def _built_in(self, name: str) -> Rig:
         rig = await self._rigs.get(name, lambda: builtin_rig(name))
-        self._names[rig.id] = name
+        if rig.id not in self._names:
+            self._names[rig.id] = name
+            self._store.name_rig(rig.id, name)
         return rig
 
     async def _file(self, key: str, make: Callable[[], bytes]) -> bytes:
@@ -151,7 +201,7 @@ class Rigs:
             raise refused_by_engine(error) from error
 
     def _unknown(self, name: str) -> NotFound:
-        known = [*BUILTIN_RIGS, *(row.id for row in self._store.rigs())]
+        known = [*_named(), *(row.id for row in self._store.rigs())]
         return NotFound("unknown_rig", f"there is no rig {name!r}", known=known)
 
 
@@ -183,7 +233,7 @@ def merged_changes(earlier: Mapping[str, Any], later: Mapping[str, Any]) -> dict
     Tissue and muscles are changed field by field, action units and emotions as a whole.
     """
     merged = {**earlier, **later}
-    for kind in ("tissue", "muscles"):
+    for kind in ("recipe", "tissue", "muscles"):
         if kind in earlier and kind in later:
             merged[kind] = _merged_fields(earlier[kind], later[kind])
     for kind in ("action_units", "emotions"):

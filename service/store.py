@@ -37,7 +37,7 @@ class Table(DeclarativeBase):
 
 
 class RigRow(Table):
-    """A derived rig: the built-in rig it came from and what was changed."""
+    """A derived rig: the name of the rig it came from and what was changed."""
 
     __tablename__ = "rigs"
 
@@ -53,6 +53,15 @@ class PassingRigRow(Table):
     __tablename__ = "passing_rigs"
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
+
+
+class NamedRigRow(Table):
+    """An id that a rig had: another engine may give the rig of that name another one."""
+
+    __tablename__ = "named_rigs"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    name: Mapped[str] = mapped_column(String(64))
 
 
 class SessionRow(Table):
@@ -149,6 +158,16 @@ class Store:
             ).all()
             session.execute(delete(PassingRigRow).where(PassingRigRow.id.in_(removed)))
         return len(removed)
+
+    def name_rig(self, rig: str, name: str) -> None:
+        """Remember that the rig of `name`, built in or derived, has the id `rig`."""
+        with self._session.begin() as session:
+            session.merge(NamedRigRow(id=rig, name=name))
+
+    def name_of_rig(self, rig: str) -> str | None:
+        """Return the name of the rig that had this id, if there was one."""
+        row = self._get(NamedRigRow, rig)
+        return row.name if row else None
 
     def rig_count(self) -> int:
         """Return how many derived rigs are kept."""

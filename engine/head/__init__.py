@@ -13,9 +13,11 @@ from .head import (
     LidContact,
     Part,
 )
+from .identity import Person, people, tissue_of_life
 from .mesh import head_from_mesh, read_head
+from .recipe import STANDARD, Recipe
 from .skin import LEVELS
-from .standard import paper_head, standard_head
+from .standard import paper_head, person_head, standard_head
 
 __all__ = [
     "BULGE_HEIGHT",
@@ -23,13 +25,19 @@ __all__ = [
     "BULGE_RADIUS",
     "LEVELS",
     "LID_GAP",
+    "STANDARD",
     "DrawnSurface",
     "Eye",
     "Head",
     "LidContact",
     "Part",
+    "Person",
+    "Recipe",
     "head_from_mesh",
     "paper_head",
+    "people",
+    "person_head",
     "read_head",
     "standard_head",
+    "tissue_of_life",
 ]

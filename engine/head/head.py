@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -172,6 +172,7 @@ class Head:
         parts: Eyes, teeth, ears, hair …; empty for files.
         eyes: Left and right eyeball; empty for files.
         landmarks: Drawn vertex of each anthropometric landmark ("ch.L", "prn").
+        teeth: How far the dental arches stand from those of the built-in head [mm], shape (3,).
     """
 
     name: str
@@ -192,6 +193,7 @@ class Head:
     parts: tuple[Part, ...]
     eyes: tuple[Eye, ...]
     landmarks: Mapping[str, int]
+    teeth: FloatArray = field(default_factory=lambda: np.zeros(3))
 
     @cached_property
     def _index(self) -> dict[str, int]:

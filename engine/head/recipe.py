@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 
 from ..errors import InvalidValue, UnknownName
 
@@ -45,18 +45,31 @@ LIMITS: Mapping[str, tuple[float, float]] = {
             "face_width",
             "face_height",
             "forehead_height",
+            "forehead_slope",
             "brow_ridge",
+            "brow_height",
             "eye_spacing",
             "eye_size",
+            "eye_slant",
+            "eye_depth",
+            "lid_fold",
             "nose_length",
             "nose_width",
             "nose_projection",
+            "nose_bridge",
+            "nose_hump",
+            "nose_tip",
             "mouth_width",
+            "upper_lip",
             "lip_fullness",
+            "lip_projection",
             "cheekbones",
             "jaw_width",
+            "jaw_angle",
             "chin_projection",
+            "chin_width",
             "ear_size",
+            "neck_width",
             "weight",
         ),
         (-3.0, 3.0),
@@ -90,18 +103,31 @@ class Recipe:
         face_width: Width over the cheekbones (zy-zy), standard deviations; so are all to `weight`.
         face_height: Root of the nose to chin (n-gn).
         forehead_height: Hairline to root of the nose (tr-n).
+        forehead_slope: How far the forehead leans back.
         brow_ridge: How far glabella and brows stand out.
+        brow_height: How high the brows stand.
         eye_spacing: Between the inner corners of the eyes (en-en).
         eye_size: Length of the eye fissure (en-ex).
+        eye_slant: How high the outer corner stands over the inner one.
+        eye_depth: How deep the eyes lie.
+        lid_fold: How low the upper lid's fold hangs over its crease, and over the inner corner.
         nose_length: n-sn.
         nose_width: al-al.
         nose_projection: sn-prn.
+        nose_bridge: How high the bridge stands between the eyes.
+        nose_hump: How far the back of the nose bows out.
+        nose_tip: How far the tip turns up.
         mouth_width: ch-ch.
+        upper_lip: Height of the upper lip (sn-sto).
         lip_fullness: Height of the red of both lips (ls-sto, sto-li).
+        lip_projection: How far the mouth stands out.
         cheekbones: How far the cheekbones stand out forward.
         jaw_width: Over the angles of the jaw (go-go).
+        jaw_angle: How far down, out and back the angle of the jaw stands.
         chin_projection: How far the chin stands out.
+        chin_width: Breadth of the chin.
         ear_size: Length of the ear (sa-sba).
+        neck_width: Breadth of the neck.
         weight: Fullness of cheek, jowl and neck.
         skin: Tone, 0 very light to 1 dark; also a name of `SKIN_TONES`.
         undertone: -1 cool (pink) to 1 warm (golden); also "cool", "neutral", "warm".
@@ -120,18 +146,31 @@ class Recipe:
     face_width: float = 0.0
     face_height: float = 0.0
     forehead_height: float = 0.0
+    forehead_slope: float = 0.0
     brow_ridge: float = 0.0
+    brow_height: float = 0.0
     eye_spacing: float = 0.0
     eye_size: float = 0.0
+    eye_slant: float = 0.0
+    eye_depth: float = 0.0
+    lid_fold: float = 0.0
     nose_length: float = 0.0
     nose_width: float = 0.0
     nose_projection: float = 0.0
+    nose_bridge: float = 0.0
+    nose_hump: float = 0.0
+    nose_tip: float = 0.0
     mouth_width: float = 0.0
+    upper_lip: float = 0.0
     lip_fullness: float = 0.0
+    lip_projection: float = 0.0
     cheekbones: float = 0.0
     jaw_width: float = 0.0
+    jaw_angle: float = 0.0
     chin_projection: float = 0.0
+    chin_width: float = 0.0
     ear_size: float = 0.0
+    neck_width: float = 0.0
     weight: float = 0.0
     skin: float = 0.25
     undertone: float = 0.1
@@ -162,11 +201,12 @@ class Recipe:
             raise InvalidValue(f"recipe seed is {self.seed}; it must lie between 0 and 2^32 - 1")
 
     @classmethod
-    def of(cls, values: Mapping[str, object]) -> Recipe:
-        """Return the recipe that plain data gives; what is not named keeps its default.
+    def of(cls, values: Mapping[str, object], base: Recipe | None = None) -> Recipe:
+        """Return the recipe that plain data gives; what is not named stays as it is in `base`.
 
         Args:
             values: By attribute; words are understood where an attribute has them.
+            base: The built-in head if none is given.
 
         Raises:
             UnknownName: For an attribute or word that does not exist.
@@ -178,7 +218,7 @@ class Recipe:
             if name not in known:
                 raise UnknownName("recipe attribute", name, known)
             given[name] = _number(name, value)
-        return cls(**given)  # type: ignore[arg-type]
+        return replace(base or STANDARD, **given)  # type: ignore[arg-type]
 
     def to_json(self) -> dict[str, object]:
         """Return every attribute as plain data."""

@@ -1,9 +1,10 @@
-"""The heads that come with the engine: the standard one at three levels, and the paper's mask."""
+"""The heads that come with the engine: the standard one and people, and the paper's mask."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,10 +15,12 @@ from ..errors import UnknownName
 from .cage import Cage, build_cage
 from .fairing import faired_points
 from .head import DrawnSurface, Eye, Head, Part
+from .identity import moved_arrays, person_from, with_moved
 from .landmarks import landmark_vertices
 from .paint import Paint, painted
 from .parts import hair_parts, head_parts
 from .patches import EYE_CENTER, EYE_RADIUS
+from .recipe import STANDARD, Recipe
 from .skin import LEVELS, SkinMesh, drawn_surface, skin_mesh, tissue_as_drawn
 from .storage import head_from_arrays, head_to_arrays, source_key
 from .subdivision import Limit, cage_level, limit_surface
@@ -69,6 +72,29 @@ def standard_head(level: str = "high") -> Head:
     if level not in LEVELS:
         raise UnknownName("level of detail", level, LEVELS)
     return _cached(f"standard-{level}", lambda: _standard(level))
+
+
+def person_head(recipe: Recipe, level: str = "high") -> Head:
+    """Return the head of the person that a recipe describes; its tissue is the same at all levels.
+
+    Raises:
+        UnknownName: There is no such level.
+    """
+    if recipe == STANDARD:
+        return standard_head(level)
+    reference = _reference(level)
+    arrays = cached_arrays(
+        "person",
+        source_key(f"{level}-{recipe!r}"),
+        lambda: moved_arrays(person_from(reference, recipe)),
+    )
+    return with_moved(reference, arrays)
+
+
+@lru_cache(maxsize=len(LEVELS))
+def _reference(level: str) -> Head:
+    """Return the head that all people are made from; what a warp leaves as it is, they share."""
+    return standard_head(level)
 
 
 def paper_head() -> Head:

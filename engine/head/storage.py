@@ -16,7 +16,7 @@ Arrays = dict[str, npt.NDArray[np.generic]]
 
 HEAD_ARRAYS = (
     "points", "polygons", "triangles", "mirror", "fixed", "jaw_weight", "depth", "anchor_weight",
-    "follow_jaw",
+    "follow_jaw", "teeth",
 )  # fmt: skip
 DRAWN_ARRAYS = ("vertices", "normals", "triangles", "colors", "hair", "regions")
 LID_ARRAYS = ("vertices", "eyes", "clearance")

@@ -122,8 +122,8 @@ def contacts_of(head: Head) -> Contacts:
         lip_gap=np.minimum(LIP_GAP_MM, points[upper, 1] - points[lower, 1]),
         tooth_nodes=tooth_nodes,
         tooth_clearance=tooth_clearance,
-        arch=dental_arch(np.arange(ARCH_HALF_WIDTH_MM)),
-        arch_bottom=ARCH_BOTTOM_MM,
+        arch=dental_arch(np.arange(ARCH_HALF_WIDTH_MM)) + head.teeth[2],
+        arch_bottom=ARCH_BOTTOM_MM + float(head.teeth[1]),
         arch_fall=ARCH_FALL,
         eye_nodes=eye_nodes,
         eye_centers=np.ascontiguousarray(eye_centers.T),
@@ -154,7 +154,8 @@ def _teeth(head: Head) -> tuple[IndexArray, FloatArray]:
         ring, spoke, _ = ring_and_spoke(name)
         x, _, z = head.points[node]
         if ring in TOOTH_CLEARANCE_MM and spoke >= 0 and abs(x) < TOOTH_REACH_MM:
-            at_rest = z - float(dental_arch(np.array([abs(x)]))[0]) - TOOTH_MARGIN_MM
+            arch = float(dental_arch(np.array([abs(x)]))[0]) + float(head.teeth[2])
+            at_rest = z - arch - TOOTH_MARGIN_MM
             nodes.append(node)
             clearance.append(min(TOOTH_CLEARANCE_MM[ring], at_rest))
     return np.array(nodes, dtype=np.int32), np.array(clearance)

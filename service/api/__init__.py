@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from . import clips, rigs, sessions, system
+from . import clips, people, rigs, sessions, system
 from .answers import ERRORS
 
 router = APIRouter(responses=ERRORS)
-for module in (system, rigs, sessions, clips):
+for module in (system, people, rigs, sessions, clips):
     router.include_router(module.router)
 
 __all__ = ["router"]

@@ -11,9 +11,13 @@ from engine import EngineError, Keyframe, Rig, face_to_glb, format_facs, parse_f
 from ..bodies import NewRig
 from ..components import Parts
 from ..errors import Unprocessable, refused_by_engine
+from ..rigs import FULL, tag_of
 from .answers import TAGGED, GlbResponse, client_has, tagged_glb
 
 router = APIRouter(prefix="/api/rigs", tags=["rigs"])
+LevelOfDetail = Annotated[
+    str, Query(max_length=16, description="Detail of the drawn skin: low, medium or high.")
+]
 
 
 @router.get("")
@@ -25,10 +29,8 @@ async def list_rigs(parts: Parts) -> dict[str, Any]:
 @router.post("", status_code=201, responses={200: {"description": "That content exists."}})
 async def derive_rig(body: NewRig, parts: Parts, response: Response) -> dict[str, Any]:
     """Derive a rig: the same changes of the same rig always give the same id."""
-    if body.recipe:
-        raise Unprocessable("not_available", "head recipes are not available yet")
     base = await parts.rigs.get(body.base)
-    changes = body.model_dump(exclude={"base", "recipe"}, exclude_none=True)
+    changes = body.model_dump(exclude={"base"}, exclude_none=True)
     rig, created = await parts.rigs.derive(base, changes)
     response.status_code = 201 if created else 200
     response.headers["Location"] = f"/api/rigs/{rig.id}"
@@ -37,14 +39,19 @@ async def derive_rig(body: NewRig, parts: Parts, response: Response) -> dict[str
 
 @router.get("/{rig}.glb", responses=TAGGED, response_class=GlbResponse)
 async def rig_glb(
-    rig: str, parts: Parts, request: Request, names: Annotated[str, Query(max_length=16)] = "facs"
+    rig: str,
+    parts: Parts,
+    request: Request,
+    names: Annotated[str, Query(max_length=16)] = "facs",
+    level: LevelOfDetail = FULL,
 ) -> Response:
     """Return the rest head with its action units as morph targets."""
     if names != "facs":
         raise Unprocessable("not_available", "names is 'facs'; 'arkit' is not available yet")
     found = await parts.rigs.get(rig)
-    data = b"" if client_has(request, found.id) else await parts.rigs.glb(found)
-    return tagged_glb(request, data, found.id)
+    tag = tag_of(found, level)
+    data = b"" if client_has(request, tag) else await parts.rigs.glb(found, level)
+    return tagged_glb(request, data, tag)
 
 
 @router.get("/{rig}")
@@ -54,15 +61,20 @@ async def one_rig(rig: str, parts: Parts) -> dict[str, Any]:
 
 
 @router.get("/{rig}/surface.glb", responses=TAGGED, response_class=GlbResponse)
-async def surface_glb(rig: str, parts: Parts, request: Request) -> Response:
+async def surface_glb(
+    rig: str, parts: Parts, request: Request, level: LevelOfDetail = FULL
+) -> Response:
     """Return the tissue surface in stream order, and the sparse map to the drawn surface."""
     found = await parts.rigs.get(rig)
-    data = b"" if client_has(request, found.id) else await parts.rigs.surface(found)
-    return tagged_glb(request, data, found.id)
+    tag = tag_of(found, level)
+    data = b"" if client_has(request, tag) else await parts.rigs.surface(found, level)
+    return tagged_glb(request, data, tag)
 
 
 @router.get("/{rig}/expressions/{facs}.glb", responses=TAGGED, response_class=GlbResponse)
-async def expression_glb(rig: str, facs: str, parts: Parts, request: Request) -> Response:
+async def expression_glb(
+    rig: str, facs: str, parts: Parts, request: Request, level: LevelOfDetail = FULL
+) -> Response:
     """Return an expression such as `1C+2C+L12D`, settled and baked."""
     found = await parts.rigs.get(rig)
     try:
@@ -71,12 +83,13 @@ async def expression_glb(rig: str, facs: str, parts: Parts, request: Request) ->
         found.check(keyframe)
     except EngineError as error:
         raise refused_by_engine(error) from error
-    tag = f"{found.id}-{format_facs(sorted(terms, key=lambda term: term.key))}"
+    expression = format_facs(sorted(terms, key=lambda term: term.key))
+    tag = f"{tag_of(found, level)}-{expression}"
     if client_has(request, tag):
         return tagged_glb(request, b"", tag)
-    data = await parts.rigs.file(tag, lambda: _expression(found, keyframe))
+    data = await parts.rigs.file(tag, lambda: _expression(found, keyframe, level))
     return tagged_glb(request, data, tag)
 
 
-def _expression(rig: Rig, keyframe: Keyframe) -> bytes:
-    return face_to_glb(rig, settled(rig, [keyframe])[0])
+def _expression(rig: Rig, keyframe: Keyframe, level: str) -> bytes:
+    return face_to_glb(rig.at_level(level), settled(rig, [keyframe])[0])

@@ -116,7 +116,10 @@ def test_a_custom_unit_is_weighted_muscles(client: TestClient) -> None:
 @pytest.mark.parametrize(
     "changes",
     [
-        {"recipe": {"age": 80}},
+        {"recipe": {"age": 8}},
+        {"recipe": {"skin": "blue"}},
+        {"recipe": {"nose": 1}},
+        {"base": "paper", "recipe": {"age": 80}},
         {"tissue": {"nonsense": 1}},
         {"tissue": {"damping": "much"}},
         {"tissue": {"damping": 10**400}},
@@ -197,7 +200,8 @@ def test_live_edits_never_use_up_the_rigs(tmp_path: Path, monkeypatch: pytest.Mo
         for step in range(8):
             rig = edited(client, session, 1.0 + step / 10)
             wait_for_row(client, session, rig)
-        known = {line["id"] for line in client.get("/api/rigs").json()["rigs"]}
+        lines = client.get("/api/rigs").json()["rigs"]
+        known = {line["id"] for line in lines if line["id"]}
         assert {kept, rig} <= known
         assert len(known) <= 2 + 4
         assert client.get(f"/api/sessions/{session}").json()["rig"] == rig
@@ -221,8 +225,69 @@ def test_a_chain_of_rigs_is_read_back_at_once(tmp_path: Path) -> None:
         child = client.post("/api/rigs", json={"base": last, "emotions": {"smirk": "R12C"}}).json()
     with TestClient(create_app(settings_in(tmp_path)), base_url=LOCAL) as client:
         rigs = {line["id"]: line for line in client.get("/api/rigs").json()["rigs"]}
-        standard = client.get("/api/rigs/standard").json()["id"]
-        assert {rigs[last]["base"], rigs[child["id"]]["base"]} == {standard}
+        assert {rigs[last]["base"], rigs[child["id"]]["base"]} == {"standard"}
         again = client.get(f"/api/rigs/{child['id']}").json()
         assert again == child
         assert client.get(f"/api/sessions/{session}").json()["rig"] == last
+
+
+def test_a_recipe_is_a_rig(client: TestClient) -> None:
+    first = client.post("/api/rigs", json={"recipe": {"age": 60, "skin": "dark"}})
+    assert first.status_code == 201, first.text
+    again = client.post("/api/rigs", json={"recipe": {"skin": 1.0, "age": 60.0}})
+    assert (again.status_code, again.json()["id"]) == (200, first.json()["id"])
+    assert first.json()["recipe"]["age"] == 60.0
+    edited = client.post(
+        "/api/rigs", json={"recipe": {"age": 60, "skin": "dark"}, "tissue": {"damping": 50}}
+    ).json()
+    assert edited["id"] != first.json()["id"]
+    assert edited["tissue"]["pretension"] == first.json()["tissue"]["pretension"]
+
+
+def test_a_recipe_of_a_recipe_adds_up(client: TestClient) -> None:
+    old = client.post("/api/rigs", json={"recipe": {"age": 70}}).json()
+    both = client.post("/api/rigs", json={"base": old["id"], "recipe": {"sex": "female"}}).json()
+    at_once = client.post("/api/rigs", json={"recipe": {"age": 70, "sex": "female"}}).json()
+    assert both["id"] == at_once["id"]
+
+
+def test_an_unknown_attribute_comes_with_the_known_ones(client: TestClient) -> None:
+    answer = client.post("/api/rigs", json={"recipe": {"nose": 1}})
+    assert answer.status_code == 422
+    assert "nose_width" in answer.json()["known"]
+    word = client.post("/api/rigs", json={"recipe": {"skin": "blue"}})
+    assert "very_light" in word.json()["known"]
+
+
+def test_people_are_rigs(client: TestClient) -> None:
+    everybody = client.get("/api/people").json()["people"]
+    assert len(everybody) == 12
+    listed = {line["name"] for line in client.get("/api/rigs").json()["rigs"]}
+    assert {person["name"] for person in everybody} <= listed
+    rig = client.get("/api/rigs/amara").json()
+    assert rig["recipe"] == everybody[0]["recipe"]
+    session = client.post("/api/sessions", json={"rig": "amara"})
+    assert session.json()["rig"] == rig["id"]
+    client.delete(f"/api/sessions/{session.json()['id']}")
+
+
+def test_a_level_of_detail_has_its_own_tag(client: TestClient) -> None:
+    path = "/api/rigs/standard/surface.glb"
+    answers = [client.get(path, params={"level": level}) for level in ("low", "high")]
+    tags = [answer.headers["ETag"] for answer in answers]
+    assert tags[0] != tags[1] == client.get(path).headers["ETag"]
+    assert len(answers[0].content) < len(answers[1].content)
+    refused = client.get(path, params={"level": "huge"})
+    assert refused.status_code == 422
+    assert refused.json()["known"] == ["high", "low", "medium"]
+
+
+def test_an_id_of_an_older_engine_is_found(tmp_path: Path) -> None:
+    with TestClient(create_app(settings_in(tmp_path)), base_url=LOCAL) as client:
+        store = client.app.state.parts.store  # type: ignore[attr-defined]
+        store.name_rig("0123456789abcdef", "standard")
+        store.add_rig("fedcba9876543210", base="standard", changes={"tissue": {"damping": 50}})
+        standard = client.get("/api/rigs/standard").json()
+        assert client.get("/api/rigs/0123456789abcdef").json() == standard
+        derived = client.get("/api/rigs/fedcba9876543210").json()
+        assert client.get(f"/api/rigs/{derived['id']}").json() == derived

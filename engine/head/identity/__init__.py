@@ -1,0 +1,19 @@
+"""Identity: how a recipe makes a person's head of the built-in one."""
+
+from __future__ import annotations
+
+from .ageing import tissue_of_life
+from .people import Person, people
+from .person import moved_arrays, person_from, with_moved
+from .shape import Warp, warp_of
+
+__all__ = [
+    "Person",
+    "Warp",
+    "moved_arrays",
+    "people",
+    "person_from",
+    "tissue_of_life",
+    "warp_of",
+    "with_moved",
+]

@@ -1,0 +1,168 @@
+"""What sex, weight and years do to a face: its form and its tissue.
+
+Form: the nose and ears go on growing and the tip sinks, lips thin and the upper lip lengthens
+(Farkas; Albert, Ricanek, Patterson 2007; Sforza et al. 2009), brows and lids descend, temples,
+cheeks and orbits hollow, the maxilla retreats and ligaments hold while the skin between them sags
+into folds and jowls (Mendelson and Wong, 2012). Most of it starts at about 35.
+
+Tissue: skin's elasticity falls by about half from 20 to 80 (Cua, Wilhelm, Maibach 1990; Escoffier
+et al. 1989), so that pre-tension and the dermis' low stiffness fall and fibres straighten later;
+the epidermis stiffens, fat and ligaments slacken. Extents were chosen within those trends and kept
+where the face stays stable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..recipe import Recipe
+
+_ONSET, _FULL = 32.0, 85.0
+
+
+def years_shown(age: float, onset: float = _ONSET, full: float = _FULL) -> float:
+    """Return how much of ageing shows at `age`: 0 to `onset`, 1 at `full`, a little more beyond."""
+    share = max(0.0, age - onset) / (full - onset)
+    return float(share**1.25)
+
+
+_PER_FULL_AGE: Mapping[str, float] = {
+    "nose_tip": -2.4,
+    "ear_length": 6.0,
+    "lobule": 3.0,
+    "upper_lid": 1.0,
+    "lower_lid": 0.5,
+    "fold": 2.4,
+    "brow_ptosis": 3.0,
+    "temple": -3.0,
+    "cheek": -2.0,
+    "mid_cheek": -1.8,
+    "tear_trough": 2.6,
+    "eye_bag": 1.6,
+    "eye_depth": 1.2,
+    "nasolabial": 2.2,
+    "marionette": 2.0,
+    "jowl": 3.6,
+    "submental": 2.6,
+    "neck_bands": 1.6,
+    "maxilla": 2.4,
+    "lip_projection": -1.0,
+    "chin_projection": 0.8,
+    "cheekbones": -0.6,
+    "brow_ridge": 0.4,
+}
+"""Amplitude of each mode when all of ageing shows, mm or so."""
+
+_PER_STANDARD_DEVIATION_OF_WEIGHT: Mapping[str, float] = {
+    "cheek": 2.0,
+    "mid_cheek": 0.7,
+    "jowl": 1.5,
+    "submental": 3.2,
+    "neck_soft": 1.6,
+    "temple": 0.7,
+    "jaw_line": 1.3,
+    "nasolabial": 0.3,
+    "eye_bag": 0.15,
+}
+
+_FEMALE: Mapping[str, float] = {
+    "brow_ridge": -2.2,
+    "brow_height": 1.6,
+    "brow_arch": 1.0,
+    "forehead_slope": -2.5,
+    "forehead_dome": 1.4,
+    "eye_depth": -0.8,
+    "nose_bridge": -1.1,
+    "nose_root_width": -1.0,
+    "nose_hump": -0.7,
+    "nose_tip": 1.6,
+    "nose_tip_width": -1.5,
+    "cheekbones": 0.5,
+    "mid_cheek": 0.8,
+    "cheek": -0.4,
+    "cupid": 0.6,
+    "chin_projection": -1.2,
+    "chin_width": -3.2,
+    "jaw_angle": -2.8,
+    "jaw_line": -2.6,
+    "neck_width": -6.5,
+    "larynx": -2.6,
+    "submental": -0.6,
+    "ear_length": -2.4,
+    "nasolabial": -0.4,
+}
+"""What tells a woman's head from a man's beside its measurements."""
+
+RED_LOST_SHARE = 0.38
+"""Share of the lips' red that is gone when all of ageing shows."""
+UPPER_LIP_GAINED_MM = 3.2
+NOSE_GAINED_MM = 2.2
+
+
+def form_of_life(recipe: Recipe) -> dict[str, float]:
+    """Return the amplitude of each mode that sex, weight and age give."""
+    amplitudes: dict[str, float] = {}
+    shown = years_shown(recipe.age)
+    shares = (
+        (1.0 - recipe.sex, _FEMALE),
+        (recipe.weight, _PER_STANDARD_DEVIATION_OF_WEIGHT),
+        (shown, _PER_FULL_AGE),
+    )
+    for share, modes in shares:
+        for name, amplitude in modes.items():
+            amplitudes[name] = amplitudes.get(name, 0.0) + share * amplitude
+    # Fat fills what years hollow, and hangs where the skin slackens.
+    amplitudes["jowl"] += 0.7 * shown * max(recipe.weight, 0.0)
+    # Youth is rounder: the last of childhood's fat goes by about 25.
+    young = float(np.clip((26.0 - recipe.age) / 8.0, 0.0, 1.0))
+    amplitudes["mid_cheek"] += 0.6 * young
+    amplitudes["cheek"] += 0.7 * young
+    return amplitudes
+
+
+def measures_of_age(recipe: Recipe, measure: str, mean: float) -> float:
+    """Return by how much a measure of mean size `mean` changes with the recipe's years, mm."""
+    shown = years_shown(recipe.age)
+    change = {
+        "ls-sto": -RED_LOST_SHARE * mean,
+        "sto-li": -RED_LOST_SHARE * 0.75 * mean,
+        "sn-sto": UPPER_LIP_GAINED_MM,
+        "n-sn": NOSE_GAINED_MM,
+        "n-gn": NOSE_GAINED_MM,
+        "ps-pi": -0.10 * mean,
+        "al-al": 1.4,
+        "ch-ch": 1.5,
+    }
+    return shown * change.get(measure, 0.0)
+
+
+def tissue_of_life(recipe: Recipe) -> dict[str, object]:
+    """Return the tissue parameters that the recipe's age, sex and weight change, as edits."""
+    shown = years_shown(recipe.age, 25.0, 85.0)
+    female = 1.0 - recipe.sex
+    if shown == 0.0 and female == 0.0 and recipe.weight == 0.0 and recipe.age >= 25.0:
+        return {}
+    slack = 1.0 - 0.30 * shown
+    return {
+        "pretension": 0.12 * (1.0 - 0.35 * shown) * (1.0 - 0.03 * female),
+        "strain_threshold": 0.15 + 0.05 * shown,
+        "stiffness_low": {
+            "epidermis": 50.0 * (1.0 + 0.15 * shown),
+            "dermis": 20.0 * slack * (1.0 - 0.08 * female),
+            "hypodermis": 30.0 * (1.0 - 0.15 * shown) * (1.0 - 0.04 * recipe.weight),
+        },
+        "stiffness_high": {
+            "epidermis": 100.0 * (1.0 + 0.15 * shown),
+            "dermis": 40.0 * (1.0 + 0.10 * shown) * (1.0 - 0.05 * female),
+        },
+        "fat_pressure": 120.0 * (1.0 - 0.35 * shown) * (1.0 + 0.08 * recipe.weight),
+        "ligament": 3.0 * (1.0 - 0.20 * shown),
+        "damping": 40.0 * (1.0 - 0.08 * shown),
+    }
+
+
+def grey_of_age(age: float) -> float:
+    """Return the usual share of grey hair: half of people are half grey at 50 (Panhard 2012)."""
+    return float(1.0 / (1.0 + np.exp(-(age - 57.0) / 6.5)) if age > 30.0 else 0.0)

@@ -1,0 +1,87 @@
+"""People made of recipes: measured as asked, symmetric, unfolded, lids and lips at ease."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine.head import STANDARD, Head, Recipe, people, person_head
+from engine.head.anthropometry import measured
+from engine.head.identity import warp_of
+from engine.head.identity.fit import measures, targets, tolerance
+
+RECIPES = {
+    "woman": Recipe(sex=0.0),
+    "old": Recipe(age=85.0),
+    "heavy": Recipe(sex=0.5, weight=2.0),
+    "extreme": Recipe(nose_width=2.5, lip_fullness=2.5, face_width=-2.0, eye_spacing=2.0),
+    **{name: person.recipe for name, person in people().items()},
+}
+
+
+def test_the_built_in_recipe_moves_nothing(head: Head) -> None:
+    warp = warp_of(STANDARD, head)
+    assert warp.is_identity
+    assert warp(head.points) == pytest.approx(head.points, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_a_person_measures_what_the_recipe_asks(head: Head, name: str) -> None:
+    recipe = RECIPES[name]
+    wanted = targets(recipe, measured(head))
+    warp = warp_of(recipe, head)
+    places = {mark: head.drawn.vertices[index] for mark, index in head.landmarks.items()}
+    moved = dict(zip(places, warp(np.array(list(places.values()))), strict=True))
+    found = measures(moved)
+    off = {
+        measure: (found[measure], goal)
+        for measure, goal in wanted.items()
+        if abs(found[measure] - goal) > tolerance(goal)
+    }
+    assert not off
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_nothing_folds(head: Head, name: str) -> None:
+    person = person_head(RECIPES[name])
+    for points, before, triangles in (
+        (person.points, head.points, head.triangles),
+        (person.drawn.vertices, head.drawn.vertices, head.drawn.triangles),
+    ):
+        old, new = (_cross(p, triangles) for p in (before, points))
+        turned = (old * new).sum(axis=1) / (np.linalg.norm(old, axis=1) ** 2 + 1e-9)
+        assert (turned > 0.05).all()
+
+
+def _cross(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    a, b, c = (points[triangles[:, corner]] for corner in range(3))
+    return np.cross(b - a, c - a)
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_the_tissue_is_symmetric_to_the_last_bit(head: Head, name: str) -> None:
+    person = person_head(RECIPES[name])
+    image = person.points[person.mirror] * [-1.0, 1.0, 1.0]
+    assert np.array_equal(np.abs(image), np.abs(person.points))
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_lids_keep_off_the_ball(name: str) -> None:
+    person = person_head(RECIPES[name])
+    for side, eye in zip("LR", person.eyes, strict=True):
+        edge = [person.point(f"E1_{spoke}.{side}") for spoke in range(16)]
+        assert np.linalg.norm(person.points[edge] - eye.center, axis=1).min() >= 12.1
+    rest = person.drawn.lids.project(person.drawn.vertices, person.eyes)
+    assert rest == pytest.approx(person.drawn.vertices, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_lips_still_meet(head: Head, name: str) -> None:
+    person = person_head(RECIPES[name])
+    for spoke in range(5):
+        ends = [
+            person.point(f"M0_{place}" + (".L" if spoke else "")) for place in (spoke, 10 - spoke)
+        ]
+        gap = np.linalg.norm(np.subtract(*person.points[ends]))
+        before = np.linalg.norm(np.subtract(*head.points[ends]))
+        assert abs(gap - before) < 0.25
