@@ -155,7 +155,10 @@ def sheet(
     size: Annotated[int, typer.Option(min=64, max=1024, help="Side of a picture, pixels.")] = 320,
     view: Annotated[
         str,
-        typer.Option(help="Views, comma separated: front, three-quarter, profile, degrees."),
+        typer.Option(
+            help="Views, comma separated: front, three-quarter, profile, left, eye, mouth, ear,"
+            " degrees."
+        ),
     ] = "three-quarter",
     only: Annotated[
         str, typer.Option(help="Names to show, comma separated: AU12,happiness,rest,6C+12D.")

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import FloatRect, Page
 
 Show = Callable[[str, float], None]
-VIEWS = ("front", "three-quarter", "profile")
+CLOSE_UPS = ("eye", "mouth", "ear")
+VIEWS = ("front", "three-quarter", "profile", "left", *CLOSE_UPS)
 PICTURES = (".png", ".jpg", ".jpeg", ".webp")
 _TIMEOUT_MS = 60_000
 _NO_CONTENT = 204
@@ -185,13 +186,18 @@ def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[
                 named = [rig] * (len(rigs) > 1) + [view] * (len(plan.views) > 1)
                 if len(poses) > 1 or not named:
                     named.insert(len(rigs) > 1, pose.label)
-                yield " ".join(named), page.screenshot(clip=_face_of(page))
+                yield " ".join(named), page.screenshot(clip=_frame_of(_side(page), view))
         _call(page, "DELETE", f"{url}/api/sessions/{session}")
 
 
-def _face_of(page: Page) -> FloatRect:
-    """Return the part of the page that shows the face, from hairline to chin, pixels."""
-    side = float((page.viewport_size or {"width": 0})["width"])
+def _side(page: Page) -> float:
+    return float((page.viewport_size or {"width": 0})["width"])
+
+
+def _frame_of(side: float, view: str) -> FloatRect:
+    """Return the part of a square page that is the picture: of a head, from hairline to chin."""
+    if view in CLOSE_UPS:
+        return {"x": 0.0, "y": 0.0, "width": side, "height": side}
     shown = side / _ROOM
     return {"x": (side - shown) / 2.0, "y": _ABOVE * side, "width": shown, "height": shown}
 

@@ -20,10 +20,15 @@ import type { GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { createMaterial } from './materials';
 import { MovingNormals } from './normals';
+import { skinForm } from './skin-form';
 import { strandSides } from './strand-sides';
 import { Strands } from './strands';
 import type { Eyeball } from './surface';
 import { DrawnSurface } from './surface';
+import type { MapName } from './textures';
+import { FaceMaps, mapAddresses } from './textures';
+import type { Gauges } from './wrinkles';
+import { Wrinkles } from './wrinkles';
 
 /** One moment of the face; a decoded frame is one. */
 export interface FacePose {
@@ -55,6 +60,21 @@ interface SkinExtras {
   }[];
   landmarks?: Record<string, number>;
   names?: string[];
+  regions?: number;
+  region_names?: string[];
+  seams?: number;
+  wrinkles?: Record<keyof Gauges, number> | null;
+}
+
+/** What the file says of the skin besides its mesh. */
+interface Skin {
+  surface: DrawnSurface;
+  roots: Map<Mesh, ArrayLike<number>>;
+  maps: Partial<Record<MapName, string>>;
+  regions: ArrayLike<number> | null;
+  /** First of the vertices that lie at the same place, for each. */
+  seams: ArrayLike<number> | null;
+  gauges: Gauges | null;
 }
 
 interface RidingStrands {
@@ -89,6 +109,10 @@ export class Face {
   private readonly nodes = new Map<string, Object3D>();
   private readonly jawRest: Vector3;
   private readonly grid: number;
+  private readonly maps = new FaceMaps();
+  private readonly mapAddresses: Partial<Record<MapName, string>>;
+  private readonly wrinkles: Wrinkles | null;
+  private readonly wrinkle: BufferAttribute;
 
   /**
    * Load the tissue surface of a rig.
@@ -96,10 +120,10 @@ export class Face {
    */
   static async load(url: string): Promise<Face> {
     const gltf = await new GLTFLoader().loadAsync(url);
-    return Face.build(gltf);
+    return Face.build(gltf, url);
   }
 
-  private static async build(gltf: GLTF): Promise<Face> {
+  private static async build(gltf: GLTF, url: string): Promise<Face> {
     const skin = meshes(gltf.scene).find((mesh) => mesh.userData.role === 'skin');
     const extras = skin?.userData as Partial<SkinExtras> | undefined;
     if (skin === undefined || extras?.map === undefined) {
@@ -134,15 +158,23 @@ export class Face {
       const accessor = mesh.userData.roots as number | undefined;
       if (accessor !== undefined) roots.set(mesh, await read(accessor));
     }
-    return new Face(gltf, skin, surface, roots);
+    const { regions, seams, wrinkles } = extras;
+    return new Face(gltf, skin, {
+      surface,
+      roots,
+      maps: mapAddresses(gltf.asset.extras, url),
+      regions: regions === undefined ? null : await read(regions),
+      seams: seams === undefined ? null : await read(seams),
+      gauges: wrinkles === undefined || wrinkles === null ? null : await readGauges(wrinkles, read),
+    });
   }
 
   private constructor(
     gltf: GLTF,
     skin: Mesh,
-    surface: DrawnSurface,
-    roots: Map<Mesh, ArrayLike<number>>,
+    { surface, roots, maps, regions, seams, gauges }: Skin,
   ) {
+    this.mapAddresses = maps;
     this.root = gltf.scene;
     this.surface = surface;
     this.grid = (gltf.asset.extras as { grid?: number } | undefined)?.grid ?? DEFAULT_GRID;
@@ -163,6 +195,7 @@ export class Face {
       plainArray(index) as Uint32Array,
       surface.rest,
       plainArray(skin.geometry.getAttribute('normal')) as Float32Array,
+      seams,
     );
     const restSkin = { positions: surface.rest, normals: this.normals.geometric };
     for (const [mesh, ridden] of roots) {
@@ -177,7 +210,24 @@ export class Face {
       });
     }
     this.normals.update(surface.positions, surface.dirty);
-    dress(this.root);
+    dress(this.root, this.maps);
+    const form = skinForm(
+      {
+        positions: surface.rest,
+        normals: this.normals.normals,
+        index: plainArray(index),
+      },
+      regions,
+      extras.region_names ?? [],
+    );
+    skin.geometry.setAttribute('skinForm', new Float32BufferAttribute(form, 2));
+    this.wrinkles = gauges === null ? null : new Wrinkles(gauges);
+    this.wrinkle = dynamic(
+      skin.geometry,
+      'wrinkle',
+      this.wrinkles?.weights ?? new Float32Array(surface.rest.length / 3),
+      1,
+    );
     this.skinPosition = dynamic(skin.geometry, 'position', surface.positions);
     this.skinNormal = dynamic(skin.geometry, 'normal', this.normals.normals);
   }
@@ -225,7 +275,33 @@ export class Face {
     ) as Triple;
   }
 
+  /** A landmark where it is drawn [m, head frame]; null if the surface has none of that name. */
+  landmarkPlace(name: string): Triple | null {
+    const vertex = this.landmarks[name];
+    if (vertex === undefined) return null;
+    return this.drawnVertex(vertex).map((value) => value / MILLIMETRES) as Triple;
+  }
+
+  /** Fetch the face's maps; returns what could not be had, as one sentence. */
+  loadMaps(): Promise<string> {
+    return this.maps.load(this.mapAddresses);
+  }
+
+  /** Take the maps' fading in further; tells whether it has changed what is drawn. */
+  stepFade(now: number, motion: boolean): boolean {
+    return this.maps.step(now, motion);
+  }
+
+  get fading(): boolean {
+    return this.maps.fading;
+  }
+
+  get mapsSettled(): boolean {
+    return this.maps.settled;
+  }
+
   dispose(): void {
+    this.maps.dispose();
     for (const mesh of meshes(this.root)) {
       mesh.geometry.dispose();
       for (const material of [mesh.material].flat()) material.dispose();
@@ -250,11 +326,20 @@ export class Face {
     this.normals.update(this.surface.positions, this.surface.dirty);
     this.skinPosition.needsUpdate = true;
     this.skinNormal.needsUpdate = true;
+    if (this.wrinkles?.update(this.placePoint) === true) this.wrinkle.needsUpdate = true;
     for (const { strands, attribute } of this.strands) {
       strands.update({ positions: this.surface.positions, normals: this.normals.geometric });
       attribute.needsUpdate = true;
     }
   }
+
+  /** Where a streamed point is now [m]; only differences of places are asked for. */
+  private readonly placePoint = (point: number, out: Triple): void => {
+    const [x, y, z] = this.surface.displacement(point);
+    out[0] = this.tissueRest[point * 3]! + x;
+    out[1] = this.tissueRest[point * 3 + 1]! + y;
+    out[2] = this.tissueRest[point * 3 + 2]! + z;
+  };
 
   private turn(name: string, rotated: Quaternion): boolean {
     const node = this.nodes.get(name);
@@ -279,6 +364,22 @@ function rotation(yaw: number, pitch: number, roll: number): Quaternion {
   );
 }
 
+async function readGauges(
+  accessors: Record<keyof Gauges, number>,
+  read: (accessor: number) => Promise<ArrayLike<number>>,
+): Promise<Gauges> {
+  const { first, second, rest, gain, indptr, indices, weights } = accessors;
+  return {
+    first: await read(first),
+    second: await read(second),
+    rest: await read(rest),
+    gain: await read(gain),
+    indptr: await read(indptr),
+    indices: await read(indices),
+    weights: await read(weights),
+  };
+}
+
 function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
   return {
     center: eye.center,
@@ -290,7 +391,7 @@ function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
 }
 
 /** Give every mesh its material, its shadow and its place in the drawing order. */
-function dress(root: Object3D): void {
+function dress(root: Object3D, maps: FaceMaps): void {
   root.updateMatrixWorld(true);
   const neckFade = neckFadeOf(root);
   for (const mesh of meshes(root)) {
@@ -302,6 +403,7 @@ function dress(root: Object3D): void {
       vertexColors: mesh.geometry.hasAttribute('color'),
       inMouth,
       neckFade,
+      maps: mesh.geometry.hasAttribute('uv') ? maps : null,
     });
     mesh.castShadow = kind !== 'cornea';
     mesh.receiveShadow = kind !== 'cornea';
@@ -309,7 +411,8 @@ function dress(root: Object3D): void {
     mesh.renderOrder = DRAWN_AFTER[kind] ?? 0;
     if (kind === 'hair') addStrandSides(mesh);
     if (kind === 'skin') {
-      mesh.geometry.setAttribute('restPosition', mesh.geometry.getAttribute('position').clone());
+      const positions = mesh.geometry.getAttribute('position');
+      mesh.geometry.setAttribute('restPosition', positions.clone());
     }
   }
 }
@@ -353,8 +456,13 @@ function neckFadeOf(root: Object3D): readonly [number, number] | null {
 }
 
 /** Put an array in place of an attribute, for values that change from frame to frame. */
-function dynamic(geometry: BufferGeometry, name: string, array: Float32Array): BufferAttribute {
-  const attribute = new Float32BufferAttribute(array, 3);
+function dynamic(
+  geometry: BufferGeometry,
+  name: string,
+  array: Float32Array,
+  size = 3,
+): BufferAttribute {
+  const attribute = new Float32BufferAttribute(array, size);
   attribute.array = array;
   attribute.setUsage(DynamicDrawUsage);
   geometry.setAttribute(name, attribute);

@@ -11,13 +11,16 @@ export interface ViewerHandle {
   readonly tick: number;
   readonly framesDrawn: number;
   readonly asleep: boolean;
+  /** The rig's maps are shown in full; also true if it has none, or they could not be had. */
+  readonly textured: boolean;
   /** Drawn vertex of each anthropometric landmark. */
   readonly landmarks: Readonly<Record<string, number>>;
   /** A streamed point, by name or index, as drawn [mm, head frame]. */
   point(which: string | number): Triple;
   /** A vertex of the geometry buffer that is drawn [mm, head frame]. */
   drawnVertex(index: number): Triple;
-  setView(name: string): void;
+  /** Stand at a view: a name of views.ts, or degrees aside. */
+  setView(view: string | number): void;
   /** Resolves after the next drawn frame. */
   render(): Promise<void>;
 }

@@ -20,15 +20,16 @@ const SHADOW_MAP_SIZE = 2048;
 /** Lights for a camera in front of the face; turn the group with the camera, so that every view is well lit. */
 export function createLights(): Group {
   const lights = new Group();
-  const key = new DirectionalLight(0xfff3e6, 2.5);
-  key.position.set(-0.22, 0.24, 0.36);
+  const key = new DirectionalLight(0xfff4ea, 2.3);
+  key.position.set(-0.26, 0.27, 0.33);
   castSoftShadow(key);
-  const fill = new DirectionalLight(0xe2e6f5, 0.6);
-  fill.position.set(0.36, 0.04, 0.24);
-  const rimLeft = new DirectionalLight(0xdfe8ff, 1.2);
-  rimLeft.position.set(0.3, 0.2, -0.26);
-  const rimRight = new DirectionalLight(0xffe2c4, 0.7);
-  rimRight.position.set(-0.34, 0.12, -0.22);
+  const fill = new DirectionalLight(0xe6ebf7, 0.42);
+  fill.position.set(0.36, 0.02, 0.3);
+  // From so far behind, these touch only edges, and no shadow of theirs is missed.
+  const rimLeft = new DirectionalLight(0xe8efff, 1.9);
+  rimLeft.position.set(0.26, 0.16, -0.36);
+  const rimRight = new DirectionalLight(0xffecd8, 1.1);
+  rimRight.position.set(-0.28, 0.12, -0.36);
   lights.add(
     key,
     key.target,

@@ -8,6 +8,8 @@ import { Connection } from './connection';
 import { Edits } from './edits';
 import { Face } from './face';
 import './handle';
+import type { Level } from './level';
+import { atLevel, levelFor } from './level';
 import Panels from './panels/Panels.svelte';
 import StatusBar from './panels/StatusBar.svelte';
 import type { FaceState, Hello } from './protocol';
@@ -41,6 +43,7 @@ let resume: (() => void) | null = null;
 
 const element = (id: string): HTMLElement => document.getElementById(id)!;
 const scene = createScene();
+const level = chooseLevel();
 const connection = new Connection({
   locate: locateStream,
   onHello: (hello) => void welcome(hello),
@@ -71,7 +74,8 @@ function createScene(): Scene {
       orbit: !page.bare,
       pixelRatio: page.pixelRatio,
       view: page.view,
-      update: applyNewestFrame,
+      placeOf: (name) => face?.landmarkPlace(name) ?? null,
+      update,
     });
   } catch (error) {
     element('curtain').textContent = 'This browser cannot draw the face: it has no WebGL 2.';
@@ -107,7 +111,7 @@ function streamOf(info: SessionInfo): string {
 async function welcome(hello: Hello): Promise<void> {
   viewer.session = session = hello.session;
   if (hello.state !== undefined) takeState(hello.state);
-  const address = api.address(hello.surface);
+  const address = atLevel(api.address(hello.surface), level);
   try {
     // A live edit moves the session to another rig on the same surface; only a true hello may change it.
     if (hello.type === 'hello' && address !== surfaceAddress) await showFace(address);
@@ -136,7 +140,9 @@ async function showFace(address: string): Promise<void> {
   face = loaded;
   surfaceLoading = false;
   scene.add(face.root);
+  scene.reframe();
   viewer.surfaceReady = true;
+  void loadMaps(loaded);
   // The frame that came while loading is still waiting, and is drawn now.
   await scene.rendered();
   const curtain = element('curtain').classList;
@@ -166,6 +172,39 @@ function takeState(state: FaceState): void {
   const emotion = state.layers?.emotion?.emotion;
   viewer.emotion = emotion?.label ?? '';
   if (emotion !== undefined) viewer.emotionIntensity = emotion.intensity;
+}
+
+/** Take in what is new; tells whether it changed what is drawn. */
+function update(): boolean {
+  const faded = face?.stepFade(performance.now(), moving()) ?? false;
+  if (face?.fading === true) scene.wake();
+  return applyNewestFrame() || faded;
+}
+
+/** A visitor sees the maps fade in; a picture of the page need not wait, nor who wants no motion. */
+function moving(): boolean {
+  return !page.bare && !window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+}
+
+/** Fetch the face's maps while it already shows; without them it stays as it is. */
+async function loadMaps(shown: Face): Promise<void> {
+  const missing = await shown.loadMaps();
+  // A console note, and no notice: the face works without.
+  // eslint-disable-next-line no-console
+  if (missing !== '') console.warn(missing);
+  if (shown === face) scene.wake();
+}
+
+/** What the device can do; a picture of the page shows all that there is. */
+function chooseLevel(): Level {
+  if (page.level !== null || page.bare) return page.level ?? 'high';
+  const { deviceMemory } = navigator as Navigator & { deviceMemory?: number };
+  return levelFor({
+    memory: deviceMemory ?? null,
+    screen: Math.min(window.screen.width, window.screen.height),
+    touch: window.matchMedia('(pointer: coarse)').matches,
+    graphics: scene.graphics,
+  });
 }
 
 /** Tells whether the face changed. */
@@ -255,13 +294,16 @@ window.__viewer = {
   get asleep() {
     return viewer.asleep;
   },
+  get textured() {
+    return face?.mapsSettled ?? false;
+  },
   get landmarks() {
     return face?.landmarks ?? {};
   },
   point: (which) => shownFace().point(which),
   drawnVertex: (index) => shownFace().drawnVertex(index),
-  setView: (name) => {
-    scene.setView(name);
+  setView: (view) => {
+    scene.setView(view);
   },
   render: () => scene.rendered(),
 };

@@ -1,17 +1,18 @@
 // How each kind of surface takes light: skin, eyes, wet mucosa, teeth, hair.
 
-import type { Material, MeshPhysicalMaterialParameters } from 'three';
+import type { Material, MeshPhysicalMaterialParameters, Texture } from 'three';
 import {
   AdditiveBlending,
-  Color,
   DoubleSide,
   MeshPhysicalMaterial,
   MeshStandardMaterial,
   Vector2,
 } from 'three';
 import { makeHair } from './hair-shader';
+import { createPores } from './pores';
 import { makeSkin } from './skin-shader';
 import { softenShadows } from './soft-shadows';
+import { FaceMaps } from './textures';
 
 /** Where a surface lies, as far as it matters to its light. */
 export interface Setting {
@@ -20,6 +21,8 @@ export interface Setting {
   inMouth: boolean;
   /** The neck dissolves into the background between these heights [mm]; null where there is no cut to hide. */
   neckFade: readonly [number, number] | null;
+  /** The face's maps; null for a surface without texture coordinates. */
+  maps: FaceMaps | null;
 }
 
 /** A fade that never begins. */
@@ -27,7 +30,7 @@ const NO_FADE = [-2000, -1999] as const;
 
 export function createMaterial(
   kind: string,
-  { vertexColors, inMouth, neckFade }: Setting,
+  { vertexColors, inMouth, neckFade, maps }: Setting,
 ): Material {
   const envMapIntensity = inMouth ? 0.25 : 1;
   switch (kind) {
@@ -60,7 +63,7 @@ export function createMaterial(
     case 'hair':
       return hair(vertexColors);
     default:
-      return skin(vertexColors, neckFade);
+      return skin(vertexColors, neckFade, maps);
   }
 }
 
@@ -70,22 +73,38 @@ function withSoftShadows(look: MeshPhysicalMaterialParameters): Material {
   return material;
 }
 
-function skin(vertexColors: boolean, fade: Setting['neckFade']): Material {
+function skin(vertexColors: boolean, fade: Setting['neckFade'], maps: FaceMaps | null): Material {
   const material = new MeshPhysicalMaterial({
     vertexColors,
     color: vertexColors ? 0xffffff : 0xd9a58a,
     roughness: 0.5,
-    specularIntensity: 0.46,
-    sheen: 0.22,
-    sheenRoughness: 0.45,
-    sheenColor: new Color(0.9, 0.48, 0.38),
+    // Skin's outermost layer, the stratum corneum: 2.8 % of light from straight ahead.
+    ior: 1.4,
     transparent: fade !== null,
   });
   const neckFade = { value: new Vector2(...(fade ?? NO_FADE)) };
+  const { uniforms, shown } = maps ?? new FaceMaps();
+  if (maps !== null) material.defines = { ...material.defines, SKIN_MAPS: '' };
+  const poreMap = { value: maps === null ? null : pores() };
   material.onBeforeCompile = (program) => {
-    makeSkin(program, neckFade);
+    makeSkin(program, {
+      neckFade,
+      mapsShown: shown,
+      albedoMap: uniforms.albedo,
+      reliefMap: uniforms.normal,
+      ormMap: uniforms.orm,
+      wrinkleMap: uniforms.wrinkles,
+      poreMap,
+    });
   };
   return material;
+}
+
+let sharedPores: Texture | null = null;
+
+/** One tile for all faces. */
+function pores(): Texture {
+  return (sharedPores ??= createPores());
 }
 
 /** Strands are blended, so that those thinner than a pixel fade instead of breaking into dots. */

@@ -11,6 +11,10 @@ export class MovingNormals {
   readonly normals: Float32Array;
   /** Area-weighted unit normals of the triangles, which strands turn with. */
   readonly geometric: Float32Array;
+  /** Of each vertex, the first that lies at its place: where maps are cut, vertices are doubled. */
+  private readonly first: Uint32Array;
+  private readonly doubles: Uint32Array;
+  /** Of first vertices, with the triangles of their doubles. */
   private readonly fans: Fans;
   /** Area-weighted normal of each triangle. */
   private readonly faces: Float32Array;
@@ -23,9 +27,15 @@ export class MovingNormals {
     private readonly index: Uint32Array | Uint16Array,
     rest: Float32Array,
     restNormals: Float32Array,
+    seams: ArrayLike<number> | null = null,
   ) {
     const vertices = rest.length / 3;
-    this.fans = fansOf(index, vertices);
+    this.first = Uint32Array.from({ length: vertices }, (_, i) => seams?.[i] ?? i);
+    this.doubles = Uint32Array.from(this.first.keys()).filter((i) => this.first[i] !== i);
+    this.fans = fansOf(
+      index.map((vertex) => this.first[vertex]!),
+      vertices,
+    );
     this.faces = new Float32Array(index.length);
     this.dirtyTriangle = new Uint8Array(index.length / 3).fill(1);
     this.dirtyVertex = new Uint8Array(vertices).fill(1);
@@ -49,12 +59,15 @@ export class MovingNormals {
     const { pointers, triangles } = this.fans;
     for (let vertex = 0; vertex < moved.length; vertex++) {
       if (moved[vertex] === 0) continue;
-      const end = pointers[vertex + 1]!;
-      for (let k = pointers[vertex]!; k < end; k++) {
+      const first = this.first[vertex]!;
+      const end = pointers[first + 1]!;
+      for (let k = pointers[first]!; k < end; k++) {
         const triangle = triangles[k]!;
         if (this.dirtyTriangle[triangle] !== 0) continue;
         this.dirtyTriangle[triangle] = 1;
-        for (let c = 0; c < 3; c++) this.dirtyVertex[this.index[triangle * 3 + c]!] = 1;
+        for (let c = 0; c < 3; c++) {
+          this.dirtyVertex[this.first[this.index[triangle * 3 + c]!]!] = 1;
+        }
       }
     }
   }
@@ -65,6 +78,12 @@ export class MovingNormals {
     }
     for (let vertex = 0; vertex < this.dirtyVertex.length; vertex++) {
       if (this.dirtyVertex[vertex] !== 0) this.updateVertex(vertex);
+    }
+    for (const double of this.doubles) {
+      const first = this.first[double]!;
+      if (this.dirtyVertex[first] === 0) continue;
+      this.geometric.copyWithin(double * 3, first * 3, first * 3 + 3);
+      this.normals.copyWithin(double * 3, first * 3, first * 3 + 3);
     }
   }
 

@@ -2,7 +2,6 @@
 
 import type { Object3D } from 'three';
 import {
-  ACESFilmicToneMapping,
   PCFShadowMap,
   PerspectiveCamera,
   Scene as ThreeScene,
@@ -11,6 +10,9 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { createBackdrop, createEnvironment, createLights } from './lights';
+import { exposeSkin } from './tone';
+import type { PlaceOfLandmark, Shot } from './views';
+import { shotOf } from './views';
 
 /** Lashes are thinner than a pixel: below this they fall apart into dots. */
 const LEAST_PIXEL_RATIO = 1.5;
@@ -24,21 +26,22 @@ const GLIDE_MS = 900;
 /** Height of the bar over the stage, whose half the head makes room for [CSS px]. */
 const BAR_HEIGHT = 40;
 
-/** Degrees that the camera stands to the face's left of straight in front. */
-const VIEW_ANGLES: Record<string, number> = { front: 0, 'three-quarter': 35, profile: 90 };
 /** A longer lens would flatten the face, a wider one spoils it [degrees]. */
 const FIELD_OF_VIEW = 22;
-const TARGET = new Vector3(0, -0.026, 0.012);
 const ELEVATION = (2 * Math.PI) / 180;
-/** What must be seen around the target [m], half of it: the head, and some air. */
-const HALF_HEIGHT = 0.152;
-const HALF_WIDTH = 0.122;
+/** From nearer than this [m] a face looks like one in a door's peephole. */
+const LEAST_DISTANCE = 0.5;
+/** How near and far a visitor may go, by the distance of the view [shares]. */
+const NEAREST = 0.45;
+const FARTHEST = 2.8;
 
 export interface SceneOptions {
   /** Let the visitor turn the camera. */
   orbit: boolean;
   pixelRatio: number | null;
   view: string;
+  /** Where the face has a landmark; close-ups look at them. */
+  placeOf: PlaceOfLandmark;
   /** Take in what is new, e.g. the newest frame; tells whether it changed anything that is drawn. */
   update: () => boolean;
 }
@@ -52,6 +55,8 @@ export class Scene {
   private readonly observer: ResizeObserver;
   private readonly lights = createLights();
   private view: string;
+  private shot: Shot;
+  private readonly target = new Vector3();
   /** Degrees aside at which the camera stands, on its way to its view. */
   private angle: number;
   private glide: { from: number; to: number; start: number; duration: number } | null = null;
@@ -66,14 +71,14 @@ export class Scene {
     private readonly options: SceneOptions,
   ) {
     this.view = options.view;
-    this.angle = VIEW_ANGLES[this.view]!;
+    this.shot = shotOf(this.view, options.placeOf);
+    this.angle = this.shot.angle;
     this.renderer = new WebGLRenderer({
       canvas,
       antialias: true,
       powerPreference: 'high-performance',
     });
-    this.renderer.toneMapping = ACESFilmicToneMapping;
-    this.renderer.toneMappingExposure = 1.0;
+    exposeSkin(this.renderer);
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.setPixelRatio(
@@ -98,15 +103,30 @@ export class Scene {
     this.invalidate();
   }
 
-  setView(name: string): void {
-    if (!(name in VIEW_ANGLES)) {
-      throw new Error(
-        `There is no view "${name}"; known are ${Object.keys(VIEW_ANGLES).join(', ')}.`,
-      );
-    }
-    this.view = name;
-    this.angle = VIEW_ANGLES[name]!;
+  /** The graphics driver's name for itself. */
+  get graphics(): string {
+    const gl = this.renderer.getContext();
+    const named = gl.getExtension('WEBGL_debug_renderer_info');
+    return String(gl.getParameter(named === null ? gl.RENDERER : named.UNMASKED_RENDERER_WEBGL));
+  }
+
+  /**
+   * Stand at a view: a name of views.ts, or degrees aside.
+   * @throws Error when there is none of that name.
+   */
+  setView(view: string | number): void {
+    this.shot = shotOf(String(view), this.options.placeOf);
+    this.view = String(view);
+    this.angle = this.shot.angle;
     this.glide = null;
+    this.frame();
+    this.invalidate();
+  }
+
+  /** The face has changed: its landmarks may lie elsewhere. */
+  reframe(): void {
+    if (!this.framed || this.glide !== null) return;
+    this.shot = shotOf(this.view, this.options.placeOf);
     this.frame();
     this.invalidate();
   }
@@ -152,7 +172,7 @@ export class Scene {
 
   /** Degrees aside at which the camera stands now, also where the visitor has turned it. */
   private standing(): number {
-    const { x, z } = this.camera.position.clone().sub(TARGET);
+    const { x, z } = this.camera.position.clone().sub(this.target);
     return (Math.atan2(x, z) * 180) / Math.PI;
   }
 
@@ -178,16 +198,13 @@ export class Scene {
 
   private turnLights(): void {
     const from = this.camera.position;
-    const angle = Math.atan2(from.x - TARGET.x, from.z - TARGET.z) * LIGHTS_FOLLOW;
+    const angle = Math.atan2(from.x - this.target.x, from.z - this.target.z) * LIGHTS_FOLLOW;
     this.lights.rotation.y = angle;
     this.scene.environmentRotation.y = angle;
   }
 
   private createControls(): OrbitControls {
     const controls = new OrbitControls(this.camera, this.canvas);
-    controls.target.copy(TARGET);
-    controls.minDistance = 0.36;
-    controls.maxDistance = 2.2;
     controls.enablePan = false;
     controls.rotateSpeed = 0.7;
     controls.minPolarAngle = 0.25 * Math.PI;
@@ -222,11 +239,17 @@ export class Scene {
     this.invalidate();
   }
 
-  /** Stand where the whole head fits, whatever the window's shape. */
+  /** Stand where all of the view fits, whatever the window's shape. */
   private frame(): void {
     const angle = (this.angle * Math.PI) / 180;
     const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-    const distance = Math.max(HALF_HEIGHT / slope, HALF_WIDTH / (slope * this.camera.aspect));
+    const { halfHeight, halfWidth } = this.shot;
+    const nearest = Math.max(halfHeight / slope, halfWidth / (slope * this.camera.aspect));
+    // For a close-up one takes a longer lens, and does not hold the camera to the nose.
+    const distance = Math.max(nearest, LEAST_DISTANCE);
+    this.camera.fov = (360 / Math.PI) * Math.atan((slope * nearest) / distance);
+    this.camera.updateProjectionMatrix();
+    this.target.set(...this.shot.target);
     this.camera.position
       .set(
         Math.sin(angle) * Math.cos(ELEVATION),
@@ -234,9 +257,14 @@ export class Scene {
         Math.cos(angle) * Math.cos(ELEVATION),
       )
       .multiplyScalar(distance)
-      .add(TARGET);
-    this.camera.lookAt(TARGET);
-    this.controls?.update();
+      .add(this.target);
+    this.camera.lookAt(this.target);
+    if (this.controls !== null) {
+      this.controls.target.copy(this.target);
+      this.controls.minDistance = NEAREST * distance;
+      this.controls.maxDistance = FARTHEST * distance;
+      this.controls.update();
+    }
     this.framed = true;
   }
 }

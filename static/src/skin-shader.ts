@@ -1,15 +1,41 @@
-// What the skin adds to three's physical shader: pores, tone, moisture, cropped hair, light that bleeds under it.
+// What the skin adds to three's physical shader: its maps, wrinkles and pores, and light that bleeds under it.
 
-import { ShaderChunk } from 'three';
 import type { Program } from './shader-edit';
 import { replaced } from './shader-edit';
+import { SKIN_LIGHT, SKIN_OPENNESS, scatteringShadows, scatteringSurroundings } from './skin-light';
 import { softerShadows } from './soft-shadows';
+
+/** Uniforms of the skin. Those of maps are read only where the geometry has texture coordinates. */
+export interface SkinUniforms {
+  /** Heights between which the neck dissolves into the background [mm]. */
+  neckFade: { value: unknown };
+  /** 0 vertex colours, 1 maps. */
+  mapsShown: { value: unknown };
+  albedoMap: { value: unknown };
+  reliefMap: { value: unknown };
+  ormMap: { value: unknown };
+  wrinkleMap: { value: unknown };
+  poreMap: { value: unknown };
+}
 
 /** Value noise on the rest position, so that pores stay on the skin while it deforms. Lengths in mm. */
 const NOISE = /* glsl */ `
 varying vec3 vRest;
 varying float vHair;
+varying vec2 vForm;
 uniform vec2 neckFade;
+#ifdef SKIN_MAPS
+varying vec2 vSkinUv;
+varying float vWrinkle;
+uniform float mapsShown;
+uniform sampler2D albedoMap;
+uniform sampler2D reliefMap;
+uniform sampler2D ormMap;
+uniform sampler2D wrinkleMap;
+uniform sampler2D poreMap;
+#else
+const float mapsShown = 0.0;
+#endif
 
 float hash(vec3 p) {
   p = fract(p * 0.3183099 + 0.1) * 17.0;
@@ -26,111 +52,149 @@ float noise(vec3 x) {
 }
 float pores(vec3 p) { return noise(p * 1.1) * 0.55 + noise(p * 2.3) * 0.45; }
 float stubble(vec3 p) { return noise(p * vec3(2.3, 1.1, 1.1)) * 0.6 + noise(p * vec3(4.1, 2.1, 2.1) + 40.0) * 0.4; }
-`;
-
-/** Red light travels farthest in skin: it reaches around the terminator and into the edge of a shadow. */
-const SCATTER = /* glsl */ `
 const vec3 CROPPED_HAIR = vec3(0.034, 0.021, 0.0145);
-const vec3 SCATTER_REACH = vec3(0.15, 0.07, 0.05);
-vec3 scatteredCosine(float cosine) {
-  vec3 t = clamp((cosine + SCATTER_REACH) / (1.0 + SCATTER_REACH), 0.0, 1.0);
-  return t * mix(vec3(1.0), t, SCATTER_REACH);
-}
-vec3 scatteredShadow(float lit, float cosine) {
-  // Beyond the terminator the map only shows the skin shading itself, which the scattered cosine does better.
-  float open = mix(lit, 1.0, 0.55 * smoothstep(0.06, -0.12, cosine));
-  return pow(vec3(max(open, 0.0)), vec3(0.8, 0.97, 1.02));
-}
 `;
 
-const PORES = /* glsl */ `
-{
+/**
+ * Without maps, from the vertex colours: the redder, the wetter, since lips, the rims and insides of the lids and the
+ * mouth are mucosa, and their paint says so. Skin is drier, and neither its tone nor its oil is even.
+ */
+const PAINTED = /* glsl */ `
+float hairCover = 0.0;
+float mucosa = 0.0;
+float oil = 0.5;
+if (mapsShown < 1.0) {
+  float redness = diffuseColor.r / max(diffuseColor.g, 1e-3);
+  float lip = smoothstep(2.5, 3.3, redness) * (1.0 - vHair);
+  mucosa = smoothstep(4.5, 8.0, redness) * (1.0 - vHair);
+  oil = pores(vRest * 0.5 + 50.0);
+  float blotch = noise(vRest * 0.13 + 30.0) - 0.5;
+  float freckle = noise(vRest * 0.62 + 90.0) - 0.5;
+  diffuseColor.rgb *= 1.0 + (1.0 - mucosa) * (0.10 * freckle * vec3(0.6, 1.0, 1.15) + 0.09 * blotch * vec3(0.3, 1.0, 0.9));
+  roughnessFactor += (oil - 0.5) * 0.22;
+  roughnessFactor = mix(roughnessFactor, 0.36, 0.8 * lip * (1.0 - mucosa));
+  if (vHair > 0.01) {
+    float strand = stubble(vRest + 60.0);
+    // Single hairs where they are few, a shade over all of the scalp where they are many.
+    float grown = smoothstep(0.05, 0.95, vHair);
+    hairCover = grown * mix(smoothstep(0.25, 0.75, strand), 1.0, grown);
+    diffuseColor.rgb = mix(diffuseColor.rgb, CROPPED_HAIR * (0.6 + 0.8 * strand), 0.93 * hairCover);
+    roughnessFactor = mix(roughnessFactor, 0.9, hairCover);
+  }
+}
+skinOpen = 1.0 - 0.75 * mucosa;
+#ifdef SKIN_MAPS
+  vec3 orm = texture2D(ormMap, vSkinUv).rgb;
+  vec3 relief = texture2D(reliefMap, vSkinUv).xyz * 2.0 - 1.0;
+  vec3 creased = texture2D(wrinkleMap, vSkinUv).xyz * 2.0 - 1.0;
+  relief = mix(relief, creased, vWrinkle);
+  // A wrinkle's walls see less of the room than the skin around.
+  float depth = vWrinkle * saturate(1.6 * length(creased.xy));
+  skinOpen = mix(skinOpen, orm.r * (1.0 - 0.4 * depth), mapsShown);
+  diffuseColor.rgb = mix(diffuseColor.rgb, texture2D(albedoMap, vSkinUv).rgb, mapsShown);
+  diffuseColor.rgb *= 1.0 - mapsShown * depth * vec3(0.14, 0.22, 0.24);
+  roughnessFactor = mix(roughnessFactor, orm.g, mapsShown);
+#endif
+skinBare = 1.0 - hairCover;
+skinBend = vForm.x;
+skinThin = vForm.y;
+float aboveNeck = smoothstep(neckFade.x, neckFade.y, vRest.y);
+diffuseColor.a *= aboveNeck;
+diffuseColor.rgb *= 0.15 + 0.85 * aboveNeck;
+`;
+
+/** Pores without maps, by noise; with maps, the maps' relief and a tile of what is finer than they are. */
+const RELIEF = /* glsl */ `
+skinSmooth = normal;
+if (mapsShown < 1.0) {
   vec3 at = vRest + 200.0;
   const float STEP = 0.25;
   float here = pores(at);
   vec3 slope = vec3(pores(at + vec3(STEP, 0, 0)), pores(at + vec3(0, STEP, 0)), pores(at + vec3(0, 0, STEP)));
   slope = (viewMatrix * vec4((slope - here) / STEP, 0.0)).xyz;
   slope -= normal * dot(normal, slope);
-  normal = normalize(normal - slope * mix(0.05 * (1.0 - mucosa), 0.10, hairCover));
+  normal = normalize(normal - (1.0 - mapsShown) * slope * mix(0.05 * (1.0 - mucosa), 0.10, hairCover));
 }
-`;
-
-/**
- * The redder, the wetter: lips, the rims and insides of the lids and the mouth are mucosa, and their paint says so.
- * Skin is drier, and neither its tone nor its oil is even.
- */
-const ROUGHNESS = /* glsl */ `
-float redness = diffuseColor.r / max(diffuseColor.g, 1e-3);
-float lip = smoothstep(2.5, 3.3, redness) * (1.0 - vHair);
-float mucosa = smoothstep(4.5, 8.0, redness) * (1.0 - vHair);
-float oil = pores(vRest * 0.5 + 50.0);
-float blotch = noise(vRest * 0.13 + 30.0) - 0.5;
-float freckle = noise(vRest * 0.62 + 90.0) - 0.5;
-diffuseColor.rgb *= 1.0 + (1.0 - mucosa) * (0.10 * freckle * vec3(0.6, 1.0, 1.15) + 0.09 * blotch * vec3(0.3, 1.0, 0.9));
-roughnessFactor += (oil - 0.5) * 0.22;
-roughnessFactor = mix(roughnessFactor, 0.36, 0.8 * lip * (1.0 - mucosa));
-float hairCover = 0.0;
-if (vHair > 0.01) {
-  float strand = stubble(vRest + 60.0);
-  // Single hairs where they are few, a shade over all of the scalp where they are many.
-  float grown = smoothstep(0.05, 0.95, vHair);
-  hairCover = grown * mix(smoothstep(0.25, 0.75, strand), 1.0, grown);
-  diffuseColor.rgb = mix(diffuseColor.rgb, CROPPED_HAIR * (0.6 + 0.8 * strand), 0.93 * hairCover);
-  roughnessFactor = mix(roughnessFactor, 0.9, hairCover);
+#ifdef SKIN_MAPS
+{
+  vec2 fine = texture2D(poreMap, vSkinUv * PORE_TILES).xy * 2.0 - 1.0;
+  // Wet skin, as of the lips, has no pores.
+  vec2 tilt = relief.xy / max(relief.z, 0.2) + PORE_DEPTH * smoothstep(0.3, 0.5, orm.g) * fine * vec2(1.0, -1.0);
+  // The frame of the texture coordinates, from how they change across the picture (Mikkelsen's surface gradients).
+  vec3 across = dFdx(-vViewPosition);
+  vec3 down = dFdy(-vViewPosition);
+  vec2 uvAcross = dFdx(vSkinUv);
+  vec2 uvDown = dFdy(vSkinUv);
+  vec3 downPerp = cross(down, skinSmooth);
+  vec3 acrossPerp = cross(skinSmooth, across);
+  vec3 tangent = downPerp * uvAcross.x + acrossPerp * uvDown.x;
+  vec3 bitangent = downPerp * uvAcross.y + acrossPerp * uvDown.y;
+  float longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
+  float scale = longest == 0.0 ? 0.0 : inversesqrt(longest) * mapsShown;
+  // A map's green points up, its rows count down.
+  normal = normalize(normal + scale * (tangent * tilt.x - bitangent * tilt.y));
 }
-float aboveNeck = smoothstep(neckFade.x, neckFade.y, vRest.y);
-diffuseColor.a *= aboveNeck;
-diffuseColor.rgb *= 0.15 + 0.85 * aboveNeck;
+#endif
 `;
 
 /** Hair is no sheet of skin, and the mouth mirrors no studio: little highlight of their own. */
 const GLOSS = /* glsl */ `
-float gloss = (0.55 + 0.9 * oil) * (1.0 - 0.75 * hairCover) * (1.0 - 0.8 * mucosa);
+float gloss = mix(0.6 + 0.8 * oil, 1.0, mapsShown) * (1.0 - 0.75 * hairCover) * (1.0 - 0.8 * mucosa);
 material.specularColor *= gloss;
 material.specularColorBlended *= gloss;
-material.sheenColor *= (1.0 - hairCover) * (1.0 - mucosa) * (1.0 - lip);
+material.specularF90 *= gloss;
 `;
 
+/** How often the tile of pores lies side by side on the map, and how steep its slopes are. */
+const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.16\n';
+
 /**
- * Change the program of a physical material into skin. Needs attributes `restPosition` [m] and `_hair`.
+ * Change the program of a physical material into skin. Needs attributes `restPosition` [m], `_hair`, `skinForm` of
+ * skin-form.ts, and with the define SKIN_MAPS `uv` and `wrinkle`.
  * @throws Error when three's shader no longer has a line that is replaced here.
  */
-export function makeSkin(program: Program, neckFade: { value: unknown }): void {
-  program.uniforms.neckFade = neckFade;
+export function makeSkin(program: Program, uniforms: SkinUniforms): void {
+  Object.assign(program.uniforms, uniforms);
   program.vertexShader = replaced(program.vertexShader, [
     [
       '#include <common>',
-      '#include <common>\nattribute vec3 restPosition;\nattribute float _hair;\nvarying vec3 vRest;\nvarying float vHair;',
+      `#include <common>
+attribute vec3 restPosition;
+attribute float _hair;
+attribute vec2 skinForm;
+varying vec3 vRest;
+varying float vHair;
+varying vec2 vForm;
+#ifdef SKIN_MAPS
+attribute float wrinkle;
+varying vec2 vSkinUv;
+varying float vWrinkle;
+#endif`,
     ],
     [
       '#include <begin_vertex>',
-      '#include <begin_vertex>\nvRest = restPosition * 1000.0;\nvHair = _hair;',
+      `#include <begin_vertex>
+vRest = restPosition * 1000.0;
+vHair = _hair;
+vForm = skinForm;
+#ifdef SKIN_MAPS
+vSkinUv = uv;
+vWrinkle = wrinkle;
+#endif`,
     ],
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
-    ['#include <common>', `#include <common>\n${NOISE}${SCATTER}`],
-    ['#include <normal_fragment_maps>', `#include <normal_fragment_maps>\n${PORES}`],
-    ['#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>\n${ROUGHNESS}`],
+    ['#include <common>', `${TILES}#include <common>\n${NOISE}`],
+    ['#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>\n${PAINTED}`],
+    ['#include <normal_fragment_maps>', `#include <normal_fragment_maps>\n${RELIEF}`],
     ['#include <lights_physical_fragment>', `#include <lights_physical_fragment>\n${GLOSS}`],
-    ['#include <lights_physical_pars_fragment>', scatteringLights()],
+    [
+      '#include <lights_physical_pars_fragment>',
+      `#include <lights_physical_pars_fragment>\n${SKIN_LIGHT}`,
+    ],
     ['#include <lights_fragment_begin>', scatteringShadows()],
+    ['#include <lights_fragment_maps>', scatteringSurroundings()],
+    ['#include <aomap_fragment>', SKIN_OPENNESS],
     ['#include <shadowmap_pars_fragment>', softerShadows()],
   ]);
-}
-
-function scatteringLights(): string {
-  return replaced(ShaderChunk.lights_physical_pars_fragment, [
-    [
-      'reflectedLight.directDiffuse += irradiance * diffuseBRDF * ( 1.0 - F );',
-      `vec3 scattered = scatteredCosine( dot( geometryNormal, directLight.direction ) ) * directLight.color;
-	reflectedLight.directDiffuse += mix( scattered, irradiance, vHair ) * diffuseBRDF * ( 1.0 - F );`,
-    ],
-  ]);
-}
-
-function scatteringShadows(): string {
-  return ShaderChunk.lights_fragment_begin.replace(
-    /directLight\.color \*= \( directLight\.visible && receiveShadow \) \? (getShadow\( directionalShadowMap.*?\)) : 1\.0;/,
-    'directLight.color *= scatteredShadow( ( directLight.visible && receiveShadow ) ? $1 : 1.0, dot( geometryNormal, directLight.direction ) );',
-  );
 }

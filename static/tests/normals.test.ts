@@ -37,6 +37,24 @@ describe('MovingNormals', () => {
     expect([...normals.normals.subarray(12, 15)]).toEqual([0, 0, 1]);
   });
 
+  it('shows no seam where vertices are doubled', () => {
+    // Two triangles in a fold along x, each with its own two vertices on the fold.
+    const fold = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, -1, 0]);
+    const up = new Float32Array(18).map((_, i) => (i % 3 === 2 ? 1 : 0));
+    const normals = new MovingNormals(
+      new Uint16Array([0, 1, 2, 4, 3, 5]),
+      fold,
+      up,
+      [0, 1, 2, 0, 1, 5],
+    );
+    const bent = fold.slice();
+    bent[17] = -1;
+    normals.update(bent, new Uint8Array([0, 0, 0, 0, 0, 1]));
+    expect([...normals.normals.subarray(9, 12)]).toEqual([...normals.normals.subarray(0, 3)]);
+    expect(normals.geometric[13]).toBeCloseTo(-1 / Math.sqrt(5), 6);
+    expect(normals.geometric[1]).toBe(normals.geometric[13]);
+  });
+
   it('weighs triangles by area', () => {
     // At vertex 0 a triangle of area 1/2 faces +z and one of area 1 faces +x.
     const positions = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 2]);

@@ -105,11 +105,13 @@ describe('readPageOptions', () => {
       rig: 'standard',
       bare: false,
       view: 'front',
+      level: null,
       pixelRatio: null,
     });
     expect(readPageOptions('?session=../x&view=above&dpr=99')).toMatchObject({
       session: null,
       view: 'front',
+      level: null,
       pixelRatio: null,
     });
   });
@@ -120,6 +122,7 @@ describe('readPageOptions', () => {
       rig: 'paper',
       bare: true,
       view: 'profile',
+      level: null,
       pixelRatio: 1,
     });
   });

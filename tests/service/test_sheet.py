@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from service.sheet import Plan, SheetRefused, _fitting, _slug, draw_sheet, poses_of, tile
+from service.sheet import Plan, SheetRefused, _fitting, _frame_of, _slug, draw_sheet, poses_of, tile
 
 RIG = {
     "action_units": [{"name": "AU1", "title": "Inner brow raiser"}],
@@ -64,3 +64,10 @@ def test_a_sheet_refuses_what_it_cannot_write(tmp_path: Path) -> None:
 
 def test_a_picture_in_a_folder_is_named_after_its_label() -> None:
     assert _slug("fear 1E+2C") == "fear-1e-2c"
+
+
+def test_a_head_s_picture_is_cut_to_its_face_and_a_close_up_is_whole() -> None:
+    assert _frame_of(402.0, "eye") == {"x": 0.0, "y": 0.0, "width": 402.0, "height": 402.0}
+    face = _frame_of(402.0, "-25")
+    assert face["width"] == face["height"] == pytest.approx(300.0)
+    assert face["x"] == pytest.approx(51.0)

@@ -1,6 +1,6 @@
 // What the panels can ask for. main.ts does it; the panels know no network and no drawing.
 
-import type { ViewName } from '../url';
+import type { ViewName } from '../views';
 
 /** What a slider moves: the name of a group in a command, and a name in it. */
 export type Group = 'action_units' | 'muscles' | 'jaw' | 'gaze' | 'head';

@@ -1,0 +1,43 @@
+// The edits to three's shaders find their lines in the version that is installed.
+
+import type { WebGLRenderer } from 'three';
+import { AgXToneMapping, ShaderChunk, ShaderLib } from 'three';
+import { describe, expect, it } from 'vitest';
+import type { Program } from '../src/shader-edit';
+import { makeSkin } from '../src/skin-shader';
+import { exposeSkin } from '../src/tone';
+
+function physical(): Program {
+  const { vertexShader, fragmentShader } = ShaderLib.physical;
+  return { vertexShader, fragmentShader, uniforms: {} };
+}
+
+describe('the skin s program', () => {
+  it('answers lights in its own way, with shadows and surroundings of its own', () => {
+    const program = physical();
+    const value = { value: null };
+    makeSkin(program, {
+      neckFade: value,
+      mapsShown: value,
+      albedoMap: value,
+      reliefMap: value,
+      ormMap: value,
+      wrinkleMap: value,
+      poreMap: value,
+    });
+    expect(program.fragmentShader).toContain('#define RE_Direct RE_Direct_Skin');
+    expect(program.fragmentShader).toContain('scatteredShadow( ( directLight.visible');
+    expect(program.fragmentShader).toContain('skinSmooth, 0.65 * skinBare');
+    expect(program.uniforms).toHaveProperty('poreMap');
+  });
+});
+
+describe('the tone curve', () => {
+  it('gets its look once', () => {
+    const renderer = {} as WebGLRenderer;
+    exposeSkin(renderer);
+    exposeSkin(renderer);
+    expect(renderer.toneMapping).toBe(AgXToneMapping);
+    expect(ShaderChunk.tonemapping_pars_fragment.split('0.2126, 0.7152').length).toBe(2);
+  });
+});

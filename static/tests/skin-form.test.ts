@@ -1,0 +1,30 @@
+// Curvature and thinness of forms that are known: a plane and a sphere.
+
+import { SphereGeometry } from 'three';
+import { describe, expect, it } from 'vitest';
+import { skinForm } from '../src/skin-form';
+
+describe('skinForm', () => {
+  it('finds a sphere s curvature, and its sign', () => {
+    const sphere = new SphereGeometry(0.05, 48, 24);
+    const positions = sphere.getAttribute('position').array;
+    const normals = sphere.getAttribute('normal').array;
+    const index = sphere.getIndex()!.array;
+    const outside = skinForm({ positions, normals, index }, null, []);
+    const inside = skinForm({ positions, normals: normals.map((n) => -n), index }, null, []);
+    const middle = (positions.length / 3) >> 1;
+    expect(outside[middle * 2]).toBeCloseTo(1 / 50, 4);
+    expect(inside[middle * 2]).toBeCloseTo(-1 / 50, 4);
+  });
+
+  it('is flat in a plane, and thin at ears and nostrils', () => {
+    const plane = {
+      positions: [0, 0, 0, 0.001, 0, 0, 0, 0.001, 0, 0.001, 0.001, 0],
+      normals: [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1],
+      index: [0, 1, 2, 2, 1, 3],
+    };
+    const form = skinForm(plane, [1, 1, 1, 1], ['cheek', 'ear']);
+    expect([...form]).toEqual([0, 1, 0, 1, 0, 1, 0, 1]);
+    expect(skinForm(plane, [0, 0, 0, 0], ['cheek', 'ear'])[1]).toBe(0);
+  });
+});
