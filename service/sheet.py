@@ -118,7 +118,8 @@ def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
 
 def _slug(label: str) -> str:
     """Return a label as the stem of a file's name."""
-    return re.sub(r"[^a-z0-9]+", "-", label.lower()).strip("-")
+    spelled = re.sub(r" -(?=\d)", " minus ", label.lower())
+    return re.sub(r"[^a-z0-9]+", "-", spelled).strip("-")
 
 
 def tile(pictures: Sequence[tuple[str, bytes]], *, columns: int, size: int) -> Image.Image:

@@ -64,6 +64,7 @@ def test_a_sheet_refuses_what_it_cannot_write(tmp_path: Path) -> None:
 
 def test_a_picture_in_a_folder_is_named_after_its_label() -> None:
     assert _slug("fear 1E+2C") == "fear-1e-2c"
+    assert _slug("rest -25") != _slug("rest 25")
 
 
 def test_a_head_s_picture_is_cut_to_its_face_and_a_close_up_is_whole() -> None:
