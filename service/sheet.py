@@ -170,7 +170,7 @@ def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
 def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[str, bytes]]:
     """Put each pose on each face, and take its pictures once it has settled."""
     page.set_default_timeout(_TIMEOUT_MS)
-    rigs = plan.rigs or [person["name"] for person in _call(page, "GET", f"{url}/api/people")]
+    rigs = plan.rigs or _people(page, url)
     for number, rig in enumerate(rigs):
         show(f"building {rig}", number / len(rigs))
         poses = poses_of(_call(page, "GET", f"{url}/api/rigs/{rig}"), plan.only)
@@ -201,6 +201,11 @@ def _frame_of(side: float, view: str) -> FloatRect:
         return {"x": 0.0, "y": 0.0, "width": side, "height": side}
     shown = side / _ROOM
     return {"x": (side - shown) / 2.0, "y": _ABOVE * side, "width": shown, "height": shown}
+
+
+def _people(page: Page, url: str) -> list[str]:
+    listed = _call(page, "GET", f"{url}/api/people")
+    return [person["name"] for person in listed["people"]]
 
 
 def _command(page: Page, session: str, pose: Pose) -> int:

@@ -38,6 +38,11 @@ export interface RigInfo {
   limits: Record<string, Record<string, [number, number]>>;
 }
 
+export interface PersonInfo {
+  name: string;
+  title: string;
+}
+
 export interface SessionInfo {
   id: string;
   rig: string;
@@ -62,6 +67,16 @@ export class Api {
     return this.json('GET', `api/rigs/${encodeURIComponent(rig)}`).then((body) =>
       completeRig(rig, body as RigAnswer),
     );
+  }
+
+  /** The people that come with the service. */
+  async people(): Promise<PersonInfo[]> {
+    return ((await this.json('GET', 'api/people')) as { people: PersonInfo[] }).people;
+  }
+
+  /** A person made by chance; the same seed makes the same one. */
+  stranger(seed: number): Promise<{ id: string }> {
+    return this.json('POST', 'api/rigs', { recipe: { sample: seed } }) as Promise<{ id: string }>;
   }
 
   openSession(rig: string): Promise<SessionInfo> {

@@ -11,11 +11,12 @@ import './handle';
 import type { Level } from './level';
 import { atLevel, levelFor } from './level';
 import Panels from './panels/Panels.svelte';
+import People from './panels/People.svelte';
 import StatusBar from './panels/StatusBar.svelte';
 import type { FaceState, Hello } from './protocol';
 import { Scene } from './scene';
 import type { Actions } from './state/actions';
-import { describeRig, tissuePatch } from './state/rig';
+import { describeRig, readable, tissuePatch } from './state/rig';
 import { ViewerState } from './state/viewer.svelte';
 import './style.css';
 import { TickRate } from './tick-rate';
@@ -28,6 +29,9 @@ const rate = new TickRate();
 viewer.rigName = page.rig;
 viewer.view = page.view;
 document.body.classList.toggle('bare', page.bare);
+
+/** How many strangers there are to meet; any seed below 2^32 is one. */
+const STRANGERS = 2 ** 32;
 
 let face: Face | null = null;
 /** Address of the surface that is wanted; the face shown may still be another. */
@@ -158,7 +162,7 @@ async function showRig(id: string, isNew: boolean): Promise<void> {
   if (isNew) {
     viewer.rig = rig;
     viewer.edits = {};
-    if (rig.name === 'standard' || rig.name === 'paper') viewer.rigName = rig.name;
+    if (viewer.rigName !== id) viewer.rigName = rig.name;
   } else if (viewer.rig !== null) {
     // An edit derived this rig. The first rig's numbers stay what the sliders count from.
     viewer.rig = { ...viewer.rig, id };
@@ -258,6 +262,16 @@ const actions: Actions = {
     connection.connect();
     if (left !== '') api.closeSession(left).catch(() => undefined);
   },
+  meetStranger() {
+    viewer.meeting = true;
+    api
+      .stranger(Math.floor(Math.random() * STRANGERS))
+      .then(({ id }) => {
+        actions.switchRig(id);
+      })
+      .catch(sayWhy)
+      .finally(() => (viewer.meeting = false));
+  },
   setView(view) {
     viewer.view = view;
     scene.glideTo(view);
@@ -271,6 +285,10 @@ const actions: Actions = {
     connection.connect();
   },
 };
+
+function sayWhy(error: unknown): void {
+  viewer.say(error instanceof Error ? error.message : 'That did not work.');
+}
 
 window.__viewer = {
   get ready() {
@@ -322,9 +340,17 @@ if (!page.bare) {
     { once: true },
   );
   mount(StatusBar, { target: element('bar'), props: { viewer, actions } });
+  const link = (path: string): string => api.address(path);
+  mount(People, { target: element('people'), props: { viewer, actions, link } });
+  api
+    .people()
+    .then((people) => {
+      viewer.people = people.map(({ name, title }) => ({ name, title, label: readable(name) }));
+    })
+    .catch(sayWhy);
   mount(Panels, {
     target: element('panels'),
-    props: { viewer, actions, link: (path: string) => api.address(path) },
+    props: { viewer, actions, link },
   });
 }
 connection.connect();

@@ -17,6 +17,8 @@ export interface Actions {
   setMuscleField(muscle: string, field: string, value: number): void;
   /** Open a new session on another rig. */
   switchRig(rig: string): void;
+  /** The same on a person made by chance. */
+  meetStranger(): void;
   setView(view: ViewName): void;
   /** Let go of every control. */
   reset(): void;

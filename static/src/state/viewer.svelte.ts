@@ -4,6 +4,15 @@ import type { Held, Numbers } from '../protocol';
 import type { Group } from './actions';
 import type { Rig } from './rig';
 
+/** Someone whose face can be opened. */
+export interface Person {
+  /** Of the rig. */
+  name: string;
+  label: string;
+  /** One line about them. */
+  title: string;
+}
+
 /** Values that the visitor's own sliders hold. */
 export class Sliders {
   action_units = $state<Numbers>({});
@@ -34,8 +43,11 @@ export class ViewerState {
   status = $state<'connecting' | 'open' | 'waiting' | 'closed'>('connecting');
   detail = $state('');
   session = $state('');
-  /** Name that the session was opened on, `standard` or `paper`. */
+  /** Name or id that the session was opened on, e.g. `standard`. */
   rigName = $state('');
+  people = $state.raw<Person[]>([]);
+  /** A stranger is being made. */
+  meeting = $state(false);
   rig = $state.raw<Rig | null>(null);
   surfaceReady = $state(false);
   tickRate = $state(0);
