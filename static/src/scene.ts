@@ -86,7 +86,7 @@ export class Scene {
     );
     this.scene.add(createBackdrop(), this.lights);
     this.scene.environment = createEnvironment(this.renderer);
-    this.scene.environmentIntensity = 0.36;
+    this.scene.environmentIntensity = 0.24;
     this.controls = options.orbit ? this.createControls() : null;
     this.observer = new ResizeObserver(() => {
       this.resize();

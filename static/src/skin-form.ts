@@ -1,7 +1,7 @@
 // The form of resting skin that its light depends on: how sharply it bends, and where it is thin.
 
 /** Skin that light shines through from behind, 0..1, by region of the surface. */
-const THIN: Record<string, number> = { ear: 1, ala: 0.55, nostril: 0.4, columella: 0.35 };
+const THIN: Record<string, number> = { ear: 1, ala: 0.22, nostril: 0.2, columella: 0.15 };
 /** Rounds of averaging: light blurs what is narrower than some millimetres anyway. */
 const ROUNDS = 3;
 /** Above this [1/mm], e.g. on the rim of a lid, light can hardly reach farther round. */

@@ -49,6 +49,9 @@ void RE_Direct_Skin(
   vec3 cosines = mix(vec3(dotNL), vec3(dot(skinSmooth, light)), BLUR * skinBare);
   // A crease sees little of a light that stands low over it (Chan, SIGGRAPH 2018).
   float crease = saturate(dotNL + 2.0 * skinOpen * skinOpen);
+  // A light behind the head reaches its edges alone; what faces the camera it would have to pass the head for.
+  float facing = saturate(dot(skinSmooth, geometryViewDir));
+  crease *= mix(1.0, smoothstep(0.55, 0.2, facing), smoothstep(0.0, -0.35, dot(light, geometryViewDir)));
   vec3 irradiance = scatteredCosine(cosines) * directLight.color * crease;
 
   vec3 halfway = normalize(light + geometryViewDir);
@@ -69,7 +72,7 @@ void RE_Direct_Skin(
   // Light from behind comes through red, and most where one looks towards it.
   float towards = pow3(saturate(-dot(geometryViewDir, normalize(light + 0.35 * skinSmooth))));
   float behind = saturate(0.25 - 0.75 * dot(skinSmooth, light)) * (0.3 + 0.9 * towards);
-  diffuse += skinThin * behind * directLight.color * RECIPROCAL_PI * vec3(0.62, 0.12, 0.05)
+  diffuse += skinThin * behind * directLight.color * RECIPROCAL_PI * vec3(0.6, 0.15, 0.07)
     * sqrt(material.diffuseContribution);
   reflectedLight.directDiffuse += diffuse;
 }
