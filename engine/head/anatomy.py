@@ -57,7 +57,7 @@ MUCOSA_ANCHOR = 1.0
 LID_CREASE_ANCHOR = 3.0
 
 # Share of the jaw's rotation by row of the cage and place in the row.
-MOUTH_ROWS = ("S1", "S2", "S3", "M0", "M1", "M2", "M3", "M4")
+MOUTH_ROWS = ("S1", "S2", "S3", "S4", "M0", "M1", "M2", "M3", "M4")
 JAW_OF_MOUTH = {4: 0.08, 5: 0.48, 6: 0.92, 7: 1.0, 8: 1.0, 9: 1.0, 10: 1.0}
 JAW_OF_COLUMN = {
     4: {3: 0.02, 4: 0.16, 5: 0.5, 6: 0.86, 7: 1.0, 8: 1.0, 9: 1.0, 10: 1.0},

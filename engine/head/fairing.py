@@ -22,11 +22,16 @@ TRUST_OF_POINT = {
     **dict.fromkeys(("W9_1", "W9_2", "W10_1", "W10_2", "W11_1", "W11_2"), 0.3),
     **dict.fromkeys(("W12_1", "W12_2", "W13_1", "W13_2"), 0.3),
     **dict.fromkeys((f"E4_{spoke}" for spoke in range(7, 14)), 0.25),
+    **dict.fromkeys(("E4_12", "E4_13"), 2.0),
+    **dict.fromkeys((f"C{column}_{row}" for column in (4, 5) for row in (8, 9, 10)), 2.0),
+    **dict.fromkeys((f"C4_{row}" for row in range(1, 6)), 2.0),
+    **dict.fromkeys((f"C{column}_{row}" for column in (5, 6, 7) for row in range(1, 5)), 0.6),
     **dict.fromkeys(("E4_6", "G4_7", "G4_6", "G3_7", "G3_6", "G2_7"), 0.15),
     **dict.fromkeys((f"C8_{row}" for row in range(1, 6)), 0.15),
     **dict.fromkeys((f"W{row}_13" for row in range(15)), 0.05),
 }
 TRUST_OF_ROW = {
+    **dict.fromkeys(("b1", "b2", "b3", "b4", "b5"), 6.0),
     "G1": 0.6,
     "G2": 0.6,
     "G3": 0.6,

@@ -63,8 +63,8 @@ def standard_head(level: str = "high") -> Head:
     """Return the built-in head.
 
     Args:
-        level: Detail of the drawn skin: "low" (2,280 triangles), "medium" (5,824) or "high"
-            (23,120). The tissue is the same at all levels.
+        level: Detail of the drawn skin: "low" (2,372 triangles), "medium" (6,072) or "high"
+            (24,112). The tissue is the same at all levels.
 
     Raises:
         UnknownName: There is no such level.

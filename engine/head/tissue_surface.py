@@ -33,7 +33,8 @@ class Follower:
 FOLLOWERS = (
     Follower("EB", "E0", 1.0, 0.0),
     Follower("S2", "M0", 0.6, 0.4),
-    Follower("S3", "M0", 0.0, 1.0),
+    Follower("S3", "M0", 0.3, 0.7),
+    Follower("S4", "M0", 0.0, 1.0),
     Follower("H2", "H1", 1.0, 0.0),
     Follower("H3", "H1", 0.7, 0.0),
 )

@@ -43,7 +43,7 @@ within the stability bound as they are built in. Where an edit goes beyond, mass
 """
 SPARED_COLUMNS = 0.9
 """The same for the fat columns alone, which many nodes feel when the jaw opens."""
-LEAST_COLUMN_SHARE = 0.15
+LEAST_COLUMN_SHARE = 0.2
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """The lips and the sock behind them: rings of spokes round the mouth.
 
 Spoke 0 is the upper midline, 5 the corner, 10 the lower midline; upper and lower lip share only the
-corner. From inside out: S3, S2, S1 the sock, M0 the contact line, M1 the crest of the lip, M2 its
-border, M3 the skin beside it, M4 from the nose's base round to the groove over the chin.
+corner. From inside out: S4, S3, S2, S1 the sock, M0 the contact line, M1 the crest of the lip, M2
+its border, M3 the skin beside it, M4 from the nose's base round to the groove over the chin.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ CORNER = 5
 MIDDLE_HEIGHT = -71.5
 
 BANDS = (
+    ("S4", "S3", "mouth_inner"),
     ("S3", "S2", "mouth_inner"),
     ("S2", "S1", "mouth_inner"),
     ("S1", "M0", "{side}_lip_inner"),
@@ -35,12 +36,12 @@ def add_mouth(half: HalfCage) -> None:
         opposite = LAST_SPOKE - spoke
         half.face(
             "mouth_inner",
-            f"S3_{spoke}",
-            f"S3_{spoke + 1}",
-            f"S3_{opposite - 1}",
-            f"S3_{opposite}",
+            f"S4_{spoke}",
+            f"S4_{spoke + 1}",
+            f"S4_{opposite - 1}",
+            f"S4_{opposite}",
         )
-    half.face("mouth_inner", "S3_4", "S3_5", "S3_6")
+    half.face("mouth_inner", "S4_4", "S4_5", "S4_6")
 
 
 def _place_sock(half: HalfCage) -> None:
@@ -52,7 +53,8 @@ def _place_sock(half: HalfCage) -> None:
         half.place(f"S1_{spoke}", [x + inwards, y + 1.2 * opening, z - 4])
         behind = 5 if spoke == CORNER else 8
         half.place(f"S2_{spoke}", [x * 0.98, MIDDLE_HEIGHT + 9 * opening, z - behind])
-        half.place(f"S3_{spoke}", [x * 0.95, MIDDLE_HEIGHT + 15 * opening, 45 + (z - 88) / 2])
+        half.place(f"S3_{spoke}", [x * 0.97, MIDDLE_HEIGHT + 13 * opening, z * 0.75 - 2])
+        half.place(f"S4_{spoke}", [x * 0.95, MIDDLE_HEIGHT + 15 * opening, 45 + (z - 88) / 2])
 
 
 def _outer_region(spoke: int) -> str:

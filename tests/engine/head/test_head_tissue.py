@@ -19,10 +19,10 @@ def rows(head: Head) -> np.ndarray:
 
 
 def test_standard_sheet(head: Head) -> None:
-    assert head.sheet_count == 658
-    assert (head.polygons[:, 3] >= 0).sum() == 594
+    assert head.sheet_count == 676
+    assert (head.polygons[:, 3] >= 0).sum() == 610
     assert (head.polygons[:, 3] < 0).sum() == 2
-    assert head.points.shape == (754, 3)
+    assert head.points.shape == (800, 3)
     assert len(head.polygon_regions) == len(head.polygons)
 
 
@@ -93,14 +93,14 @@ def test_followers_follow(head: Head) -> None:
     ):
         expected = share * sheet[head.point(leader)]
         np.testing.assert_allclose(followed[head.point(follower) - count], expected)
-    assert set(rows(head)[count:]) == {"EB", "S2", "S3", "H2", "H3"}
+    assert set(rows(head)[count:]) == {"EB", "S2", "S3", "S4", "H2", "H3"}
 
 
 def test_only_the_lower_sock_rides_the_jaw(head: Head) -> None:
     jaw = {name: head.follow_jaw[i] for i, name in enumerate(head.names[head.sheet_count :])}
-    assert jaw["S3_10"] == 1.0
+    assert jaw["S4_10"] == 1.0
     assert jaw["S2_10"] == pytest.approx(0.4)
-    assert jaw["S3_0"] == 0.0
+    assert jaw["S4_0"] == 0.0
     assert all(value == 0 for name, value in jaw.items() if name[0] in "EH")
 
 
