@@ -4,30 +4,43 @@ from __future__ import annotations
 
 from ...arrays import FloatArray
 from ..head import DrawnSurface, Part
+from ..recipe import STANDARD, Recipe
 from .brows import brow_line, brows_part
+from .caruncle import caruncle_parts
 from .ears import ear_parts
 from .eyes import eye_parts
+from .gums import gum_parts
 from .hair import hair_parts
+from .iris import eye_texture
 from .lashes import lashes_part
+from .palate import palate_parts
+from .tear_line import tear_line_part
 from .teeth import teeth_parts
 from .tongue import tongue_part
 
 
-def head_parts(skin: DrawnSurface, lid_edge: FloatArray) -> tuple[Part, ...]:
+def head_parts(
+    skin: DrawnSurface, lid_edge: FloatArray, recipe: Recipe = STANDARD
+) -> tuple[Part, ...]:
     """Return every part of the built-in head but its hair, fitted to its drawn skin.
 
     Args:
         skin: The drawn skin.
         lid_edge: Front edge of the left lids by spoke [mm], shape (16, 3).
+        recipe: Whose parts.
     """
     return (
-        *eye_parts(),
+        *eye_parts(recipe),
+        *caruncle_parts(lid_edge),
+        tear_line_part(skin, lid_edge),
         *ear_parts(),
-        *teeth_parts(),
+        *teeth_parts(recipe),
+        *gum_parts(),
+        *palate_parts(),
         tongue_part(),
         brows_part(skin),
         lashes_part(skin, lid_edge),
     )
 
 
-__all__ = ["brow_line", "hair_parts", "head_parts"]
+__all__ = ["brow_line", "eye_texture", "hair_parts", "head_parts"]

@@ -1,66 +1,65 @@
-"""Eyeballs with iris and pupil, the corneas before them, and the flesh in the eyes' corners."""
+"""Eyeballs whose iris lies behind the plane of the limbus, and the corneas that stand before them.
+
+Sizes after Snell and Lemp, "Clinical Anatomy of the Eye", 1998: a cornea of 7.8 mm radius on a ball
+of 12, its top 3 mm before the pupil.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import FloatArray
-from ..anatomy import smoothstep
-from ..geometry import (
-    Mesh,
-    grid_triangles,
-    reflected,
-    unit_sphere,
-    vertex_normals,
-    without_slivers,
-)
-from ..head import BULGE_HEIGHT, BULGE_POWER, Part
+from ...arrays import FloatArray, IntArray
+from ..geometry import Mesh, grid_triangles, vertex_normals, without_slivers
+from ..head import Part
 from ..patches import EYE_CENTER, EYE_RADIUS
+from ..recipe import Recipe
+from .iris import IRIS_RADIUS, PUPIL_RADIUS, SIZE, eye_colors, eye_uvs
 
-SEGMENTS = 96
-PUPIL_RADIUS = 1.95
-IRIS_RADIUS = 5.85
-IRIS_RECESS = 1.15
-"""How far the rim of the iris lies behind the plane of the limbus, mm."""
-PUPIL_RECESS = 0.5
+SEGMENTS = 44
+IRIS_ROOT = 9.75
+"""Depth of the iris's rim along the eye's axis, from the ball's middle, mm."""
+IRIS_RISE = 0.35
+"""How much farther forward its edge at the pupil lies: the lens carries it."""
+PUPIL_RECESS = 0.6
 LIMBUS_ANGLE = float(np.arcsin(IRIS_RADIUS / EYE_RADIUS))
-CAUSTIC_ANGLE = float(np.radians(-55))
-CORNEA_RADIUS = 6.3
-CORNEA_BULGE_RADIUS = 6.2
+CORNEA_CURVATURE = 7.8
+"""Radius of the cornea's front, mm."""
+CORNEA_CENTER = float(
+    np.sqrt(EYE_RADIUS**2 - IRIS_RADIUS**2) - np.sqrt(CORNEA_CURVATURE**2 - IRIS_RADIUS**2)
+)
+CORNEA_REACH = 6.5
+"""Radius at which the cornea's shell ends on the sclera, mm."""
+CORNEA_LIFT = 0.03
+"""Of the shell over the ball, so that neither flickers through the other, mm."""
 BACK_ANGLE = 2.2
 """Angle from the eye's axis beyond which the ball is left open, radians."""
 
-# Linear RGB.
-PUPIL = np.array([0.004, 0.004, 0.004])
-IRIS_INNER = np.array([0.27, 0.14, 0.052])
-IRIS_OUTER = np.array([0.075, 0.062, 0.045])
-LIMBUS = np.array([0.05, 0.04, 0.035])
-SCLERA = np.array([0.66, 0.565, 0.50])
-SCLERA_PINK = np.array([0.46, 0.25, 0.21])
-CARUNCLE = np.array([0.50, 0.20, 0.17])
-CORNER_FILLER = np.array([0.31, 0.18, 0.155])
 
-
-def eye_parts() -> list[Part]:
-    """Return eye, cornea and caruncle of both sides."""
-    ball, ball_colors = _eyeball()
+def eye_parts(recipe: Recipe) -> list[Part]:
+    """Return ball and cornea of both eyes."""
+    ball, uvs = _eyeball()
     cornea = _cornea()
-    flesh, flesh_colors = _corner_flesh()
+    colors = _at(eye_colors(recipe), uvs)
     parts = []
     for side, offset in (("L", EYE_CENTER), ("R", EYE_CENTER * [-1, 1, 1])):
-        # The ball is its own mirror image but for the noise in its iris, so it is only moved.
-        vertices = ball[0] + offset
+        # The shape is its own mirror image, so it is only moved; the right eye's map is mirrored.
+        own_uvs = uvs if side == "L" else np.column_stack([1 - uvs[:, 0], uvs[:, 1]])
+        own_colors = colors if side == "L" else _at(eye_colors(recipe), own_uvs)
         parts.append(
             Part(
                 name=f"eye.{side}",
-                vertices=vertices,
+                vertices=ball[0] + offset,
                 normals=vertex_normals(*ball),
                 triangles=ball[1],
-                colors=ball_colors,
+                colors=own_colors,
                 material="eye",
                 follows=f"eye.{side}",
+                uvs=own_uvs,
             )
         )
+        cornea_uvs = eye_uvs(cornea[0])
+        if side == "R":
+            cornea_uvs[:, 0] = 1 - cornea_uvs[:, 0]
         parts.append(
             Part(
                 name=f"cornea.{side}",
@@ -70,112 +69,74 @@ def eye_parts() -> list[Part]:
                 colors=np.zeros_like(cornea[0]),
                 material="cornea",
                 follows=f"eye.{side}",
-            )
-        )
-        mesh = flesh if side == "L" else reflected(flesh)
-        parts.append(
-            Part(
-                name=f"caruncle.{side}",
-                vertices=mesh[0],
-                normals=vertex_normals(*mesh),
-                triangles=mesh[1],
-                colors=flesh_colors,
-                material="wet",
-                follows="skull",
+                uvs=cornea_uvs,
             )
         )
     return parts
 
 
 def _eyeball() -> tuple[Mesh, FloatArray]:
-    """Return the ball about the origin, looking along +z, and its colours."""
-    around = np.linspace(0, 2 * np.pi, SEGMENTS, endpoint=False)
-    disc = np.r_[0, np.linspace(0.9, PUPIL_RADIUS, 3), np.linspace(2.05, IRIS_RADIUS - 0.2, 14)]
-    polar = np.r_[
-        np.linspace(LIMBUS_ANGLE - 0.02, LIMBUS_ANGLE + 0.10, 5),
-        np.linspace(LIMBUS_ANGLE + 0.16, 1.35, 11),
-        np.linspace(1.5, BACK_ANGLE, 4),
+    """Return the ball about the origin, looking along +z, and where it lies on the eye's map."""
+    disc = np.r_[
+        0.0, PUPIL_RADIUS - 0.02, PUPIL_RADIUS + 0.04, 2.3, 2.9, 3.6, 4.3, 5.0, 5.5, IRIS_RADIUS
     ]
-    limbus_plane = EYE_RADIUS * np.cos(LIMBUS_ANGLE)
-    disc_depth = limbus_plane - IRIS_RECESS + 0.9 * (disc / IRIS_RADIUS) ** 2
-    disc_depth -= PUPIL_RECESS * (disc <= PUPIL_RADIUS)
+    polar = np.r_[
+        LIMBUS_ANGLE + np.array([0.0, 0.03, 0.07, 0.14, 0.24]),
+        np.linspace(0.86, 1.4, 5),
+        1.6,
+        1.9,
+        BACK_ANGLE,
+    ]
+    inwards = (IRIS_RADIUS - disc) / (IRIS_RADIUS - PUPIL_RADIUS)
+    disc_depth = IRIS_ROOT + IRIS_RISE * np.clip(inwards, 0, 1)
+    disc_depth[:2] -= PUPIL_RECESS
     radius = np.r_[disc, EYE_RADIUS * np.sin(polar)]
     depth = np.r_[disc_depth, EYE_RADIUS * np.cos(polar)]
-    vertices = np.stack(
-        [
-            radius[:, None] * np.cos(around),
-            radius[:, None] * np.sin(around),
-            np.repeat(depth[:, None], SEGMENTS, axis=1),
-        ],
-        axis=2,
-    )
-    colors = np.concatenate([_iris_colors(disc, around), _sclera_colors(polar, around)])
-    mesh = vertices.reshape(-1, 3)
-    triangles = grid_triangles(len(radius), SEGMENTS, closed=True)
-    return (mesh, without_slivers(mesh, triangles)), colors.reshape(-1, 3)
+    vertices, triangles = _turned(radius, depth, SEGMENTS)
+    # On the map the iris lies where the limbus seen from in front has it.
+    shown = vertices.copy()
+    on_disc = np.repeat(np.arange(len(radius)) < len(disc), SEGMENTS)
+    flat = np.hypot(shown[on_disc, 0], shown[on_disc, 1])
+    shown[on_disc, 2] = np.sqrt(EYE_RADIUS**2 - flat**2)
+    return (vertices, triangles), eye_uvs(shown)
 
 
-def _iris_colors(disc: FloatArray, around: FloatArray) -> FloatArray:
-    """Return colours (r, SEGMENTS, 3): pupil, fibres that thin out outwards, dark rim."""
-    noise = np.random.default_rng(11)
-    fine = noise.normal(size=SEGMENTS)
-    broad = noise.normal(size=SEGMENTS)
-    broad = (np.roll(broad, 1) + 2 * broad + np.roll(broad, -1)) / 4
-    share = (disc / IRIS_RADIUS)[:, None]
-    outwards = smoothstep(0.42, 0.85, share)
-    base = IRIS_INNER * (1 - outwards[..., None]) + IRIS_OUTER * outwards[..., None]
-    # The collarette: a paler frill a third of the way out.
-    frill = np.exp(-(((share - 0.5 - 0.02 * broad) / 0.06) ** 2))
-    fibre = 1 + 0.3 * (0.6 * fine + 0.6 * broad) * smoothstep(0.33, 0.5, share)
-    light = fibre * (1 + 0.35 * frill)
-    light = light * (1 - 0.75 * smoothstep(0.84, 1.0, share))
-    light = light * (0.55 + 0.45 * smoothstep(0.34, 0.42, share))
-    light = light * (1 - 0.5 * np.maximum(np.sin(around), 0) * smoothstep(0.3, 1, share))  # the lid
-    # The cornea gathers light on the side away from the key light.
-    caustic = np.maximum(np.cos(around - CAUSTIC_ANGLE), 0) ** 2 * smoothstep(0.3, 0.6, share)
-    light = light * (1 + 0.9 * caustic)
-    colors = base * light[..., None]
-    return np.asarray(np.where((disc <= PUPIL_RADIUS)[:, None, None], PUPIL, np.clip(colors, 0, 1)))
-
-
-def _sclera_colors(polar: FloatArray, around: FloatArray) -> FloatArray:
-    """Return colours (r, SEGMENTS, 3): dark limbus, off-white, pink to the sides and back."""
-    from_limbus = smoothstep(LIMBUS_ANGLE - 0.02, LIMBUS_ANGLE + 0.085, polar)[:, None, None]
-    to_back = smoothstep(0.62, 1.15, polar)[:, None, None]
-    colors = LIMBUS * (1 - from_limbus) + SCLERA * from_limbus
-    colors = colors * (1 - to_back) + SCLERA_PINK * to_back
-    height = EYE_RADIUS * np.sin(polar)[:, None] * np.sin(around)
-    shade = (1 - 0.45 * smoothstep(0.5, 4.0, height)) * (1 - 0.45 * smoothstep(3.2, 5.4, height))
-    shade = shade * (1 - 0.16 * smoothstep(-3, -5.5, height))
-    return np.asarray(np.broadcast_to(colors, (*height.shape, 3)) * shade[..., None])
+def cornea_depth(off_axis: FloatArray) -> FloatArray:
+    """Return the depth of the cornea's front at distances from the eye's axis [mm]."""
+    within = np.minimum(off_axis, IRIS_RADIUS)
+    cap = CORNEA_CENTER + np.sqrt(CORNEA_CURVATURE**2 - within**2)
+    ball = np.sqrt(EYE_RADIUS**2 - off_axis**2)
+    return np.asarray(np.where(off_axis < IRIS_RADIUS, cap, ball) + CORNEA_LIFT)
 
 
 def _cornea() -> Mesh:
-    """Return the cap about the origin that stands out before the iris."""
-    around = np.linspace(0, 2 * np.pi, 48, endpoint=False)
-    radius = np.linspace(0, CORNEA_RADIUS, 14)
-    profile = np.maximum(0, 1 - (radius / CORNEA_BULGE_RADIUS) ** 2) ** BULGE_POWER
-    depth = np.sqrt(EYE_RADIUS**2 - radius**2) + 0.05 + BULGE_HEIGHT * profile
+    """Return the shell about the origin that stands out before the iris."""
+    radius = np.r_[0.0, 0.9, 1.8, 2.7, 3.5, 4.2, 4.8, 5.3, 5.65, 5.95, CORNEA_REACH]
+    depth = cornea_depth(radius)
+    # The furrow of the limbus is shallow: the cap runs into the ball without an edge.
+    depth[-3] -= 0.015
+    return _turned(radius, depth, 36)
+
+
+def _turned(radius: FloatArray, depth: FloatArray, segments: int) -> tuple[FloatArray, IntArray]:
+    """Return a profile turned about the z axis, facing +z."""
+    around = np.linspace(0, 2 * np.pi, segments, endpoint=False)
     vertices = np.stack(
         [
             radius[:, None] * np.cos(around),
             radius[:, None] * np.sin(around),
-            np.repeat(depth[:, None], len(around), axis=1),
+            np.repeat(depth[:, None], segments, axis=1),
         ],
         axis=2,
     ).reshape(-1, 3)
-    triangles = grid_triangles(len(radius), len(around), closed=True)
+    triangles = grid_triangles(len(radius), segments, closed=True)
     return vertices, without_slivers(vertices, triangles)
 
 
-def _corner_flesh() -> tuple[Mesh, FloatArray]:
-    """Return the left eye's caruncle and the flesh of its outer corner, behind which one would see.
-
-    The ball is narrower than the opening of the lids.
-    """
-    sphere, triangles = unit_sphere(12, 16)
-    inner = sphere * [4.1, 3.3, 2.8] + [19.4, -0.7, 74.8]
-    outer = sphere * [3.9, 3.6, 4.6] + [42.9, 0.4, 71.2]
-    colors = np.repeat([CARUNCLE, CORNER_FILLER], len(sphere), axis=0)
-    mesh = np.vstack([inner, outer])
-    return (mesh, np.vstack([triangles, triangles + len(sphere)])), colors
+def _at(colors: FloatArray, uvs: FloatArray) -> FloatArray:
+    """Return the map's colour at places (v, 2), the mean of a few pixels round each."""
+    place = np.clip((uvs * SIZE).astype(np.int64), 2, SIZE - 3)
+    around = [
+        colors[place[:, 1] + row, place[:, 0] + column] for row in (-1, 1) for column in (-1, 1)
+    ]
+    return np.asarray(np.mean(around, axis=0))

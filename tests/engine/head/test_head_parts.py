@@ -39,7 +39,16 @@ def test_nothing_is_missing(head: Head) -> None:
     sided = {f"{name}.{side}" for name in ("eye", "cornea", "caruncle", "ear") for side in "LR"}
     jaws = {f"{name}.{jaw}" for name in ("teeth", "gum") for jaw in ("upper", "lower")}
     present = {piece.name for piece in head.parts}
-    assert present == sided | jaws | {"tongue", "brows", "lashes", "hair", "hairline"}
+    assert present == sided | jaws | {
+        "palate",
+        "mouth_floor",
+        "tongue",
+        "tear_line",
+        "brows",
+        "lashes",
+        "hair",
+        "hairline",
+    }
 
 
 @pytest.mark.parametrize("name", ["eye", "cornea", "caruncle", "ear"])
