@@ -146,7 +146,7 @@ material.specularF90 *= gloss;
 `;
 
 /** How often the tile of pores lies side by side on the map, and how steep its slopes are. */
-const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.16\n';
+const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.8\n';
 
 /**
  * Change the program of a physical material into skin. Needs attributes `restPosition` [m], `_hair`, `skinForm` of
