@@ -2,7 +2,7 @@
 
     risorius
     └── head            turns about the neck
-        ├── skull       upper teeth and gum, ears, caruncles
+        ├── skull       upper teeth and gum, caruncles
         ├── jaw         at the hinge: lower teeth and gum, tongue
         ├── eye.L       at the eyeball's centre: ball and cornea
         └── eye.R

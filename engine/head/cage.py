@@ -15,6 +15,7 @@ from .patches import (
     HalfCage,
     add_cheek,
     add_crown,
+    add_ear,
     add_eye,
     add_forehead,
     add_mouth,
@@ -85,7 +86,8 @@ def build_half() -> HalfCage:
     add_cheek(half)
     add_nose(half)
     add_forehead(half)
-    add_side(half, authored["jaw_anchors"])
+    add_side(half, authored["side"])
+    add_ear(half, authored["ear"])
     add_crown(half)
     add_neck(half)
     return half

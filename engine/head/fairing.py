@@ -10,6 +10,8 @@ from scipy.sparse.linalg import splu
 
 from ..arrays import FloatArray, IntArray
 from .cage import Cage
+from .patches.ear import ATTACHED
+from .patches.side import STEPS, ear_rim
 from .topology import Topology
 
 REWEIGHTINGS = 2
@@ -18,9 +20,11 @@ REWEIGHTINGS = 2
 # rings are kept within a tenth of a millimetre, the skull is authored roughly and faired freely.
 HELD = 50.0
 TRUST_OF_POINT = {
-    **dict.fromkeys(("W14_1", "W14_2", "C8_6"), 0.08),
-    **dict.fromkeys(("W9_1", "W9_2", "W10_1", "W10_2", "W11_1", "W11_2"), 0.3),
-    **dict.fromkeys(("W12_1", "W12_2", "W13_1", "W13_2"), 0.3),
+    **dict.fromkeys((f"W{row}_{step}" for row in range(5, 12) for step in (1, 2)), 0.2),
+    **dict.fromkeys((f"W{row}_{step}" for row in range(12, 16) for step in range(1, 8)), 1.0),
+    **dict.fromkeys(ear_rim(), 1.0),
+    **dict.fromkeys((f"P{ring}_{spoke}" for ring in (1, 2, 3) for spoke in ATTACHED), 1.0),
+    **dict.fromkeys((f"P4_{spoke}" for spoke in ATTACHED), 1.0),
     **dict.fromkeys((f"E4_{spoke}" for spoke in range(7, 14)), 0.25),
     **dict.fromkeys(("E4_12", "E4_13"), 2.0),
     **dict.fromkeys((f"C{column}_{row}" for column in (4, 5) for row in (8, 9, 10)), 2.0),
@@ -28,7 +32,7 @@ TRUST_OF_POINT = {
     **dict.fromkeys((f"C{column}_{row}" for column in (5, 6, 7) for row in range(1, 5)), 0.6),
     **dict.fromkeys(("E4_6", "G4_7", "G4_6", "G3_7", "G3_6", "G2_7"), 0.15),
     **dict.fromkeys((f"C8_{row}" for row in range(1, 6)), 0.15),
-    **dict.fromkeys((f"W{row}_13" for row in range(15)), 0.05),
+    **dict.fromkeys((f"W{row}_{STEPS}" for row in range(16)), 0.05),
 }
 TRUST_OF_ROW = {
     **dict.fromkeys(("b1", "b2", "b3", "b4", "b5"), 6.0),
@@ -36,12 +40,9 @@ TRUST_OF_ROW = {
     "G2": 0.6,
     "G3": 0.6,
     "G4": 0.3,
-    "Q0": 0.012,
-    "Q1": 0.012,
-    "Q2": 0.5,
-    "Q3": 0.5,
+    "Q0": 0.15,
 }
-TRUST_OF_LETTER = {"W": 0.004, "T": 0.02, "C": 0.25}
+TRUST_OF_LETTER = {"W": 0.004, "T": 0.02, "C": 0.25, "Q": 0.4}
 
 
 def trust(name: str) -> float:

@@ -29,7 +29,7 @@ class Part:
     """A piece drawn beside the skin, at rest in the head's frame.
 
     Attributes:
-        name: "eye.L", "cornea.L", "caruncle.L", "ear.L", "teeth.upper", "brows", …
+        name: "eye.L", "cornea.L", "caruncle.L", "teeth.upper", "brows", …
         vertices: Positions [mm], shape (v, 3).
         normals: Unit normals, shape (v, 3).
         triangles: Vertex indices, counter-clockwise from outside, shape (t, 3).
@@ -169,7 +169,7 @@ class Head:
             rigid jaw's displacement at that point, sparse (s - n, n).
         follow_jaw: Share of the rigid jaw's displacement, shape (s - n,).
         drawn: The skin to draw.
-        parts: Eyes, teeth, ears, hair …; empty for files.
+        parts: Eyes, teeth, hair …; empty for files.
         eyes: Left and right eyeball; empty for files.
         landmarks: Drawn vertex of each anthropometric landmark ("ch.L", "prn").
         teeth: How far the dental arches stand from those of the built-in head [mm], shape (3,).

@@ -23,7 +23,7 @@ MIDLINE = {
     "sl": "M4_10",  # sublabiale, the fold over the chin
     "pg": "C4_10",  # pogonion
     "gn": "C5_10",  # gnathion, the chin's lowest point
-    "op": "W5_13",  # opisthocranion
+    "op": "W5_14",  # opisthocranion
 }
 PAIRED = {
     "en": "E1_0",  # inner corner of the eye
@@ -33,8 +33,14 @@ PAIRED = {
     "al": "A7",  # widest point of the nose
     "ch": "M1_5",  # corner of the mouth
     "zy": "W9_2",  # cheekbone
-    "go": "W14_1",  # angle of the jaw
+    "go": "W15_3",  # angle of the jaw
     "eu": "W4_4",  # widest point of the head
+    "t": "P5_18",  # tragion, the notch over the tragus
+    "sa": "P4_2",  # superaurale, the ear's top
+    "sba": "P4_11",  # subaurale, its lowest point
+    "pra": "P4_18",  # preaurale, its front edge
+    "pa": "P4_6",  # postaurale, its back edge
+    "obs": "P1_0",  # otobasion superius, where its front edge leaves the head
 }
 
 

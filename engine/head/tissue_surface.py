@@ -14,6 +14,7 @@ from .topology import Topology, boundary_loops
 
 HIDDEN = ("nostril", "mouth_inner", "upper_lid_inner", "lower_lid_inner")
 BEYOND = ("scalp", "neck")
+EAR = "ear"
 
 SMOOTHED_SHARE = 0.4
 """Part of each jaw weight that is taken from the neighbours, outside the lips."""
@@ -78,14 +79,14 @@ class TissueSurface:
 def face_sheet(cage: Cage) -> BoolArray:
     """Return which cage faces carry tissue: the face and one ring of scalp and neck, shape (f,)."""
     regions = np.array(cage.regions)
-    of_face = ~np.isin(regions, (*HIDDEN, *BEYOND))
+    of_face = ~np.isin(regions, (*HIDDEN, *BEYOND, EAR))
     face_points = np.zeros(len(cage.points), dtype=bool)
     face_points[corners_of(cage.faces[of_face])] = True
     touching = np.isin(regions, BEYOND) & _any_corner(cage.faces, face_points)
     grown = face_points.copy()
     grown[corners_of(cage.faces[touching])] = True
     enclosed = ~_any_corner(cage.faces, ~grown)
-    return np.asarray(enclosed & ~np.isin(regions, HIDDEN))
+    return np.asarray(enclosed & ~np.isin(regions, (*HIDDEN, EAR)))
 
 
 def tissue_surface(cage: Cage, points: FloatArray, sheet_faces: BoolArray) -> TissueSurface:

@@ -25,7 +25,7 @@ MEASURED: Mapping[str, tuple[Term, ...]] = {
         ),
     ),
     "face_width": (Bump("W9_2", (34, 36, 42), (0.5, 0, 0)),),
-    "jaw_width": (Bump("W14_1", (30, 26, 34), (0.5, 0, 0)),),
+    "jaw_width": (Bump("W15_3", (30, 26, 34), (0.5, 0, 0)),),
     "head_width": (Bump("eu", (45, 45, 55), (0.5, 0, 0)),),
     "head_length": (Bump("op", (70, 70, 60), (0, 0, -1)),),
     "vault": (Bump("v", (70, 55, 90), (0, 1, 0)),),
@@ -79,7 +79,7 @@ FORMS: Mapping[str, tuple[Term, ...]] = {
     "cupid": (Bump("M2_1", (4.5, 3.5, 8), (0, 0.7, 0.2)), Bump("M2_0", (3, 3, 8), (0, -0.5, 0))),
     "chin_projection": (Bump("pg", (20, 15, 24), (0, 0, 1)),),
     "chin_width": (Bump("C4_8", (11, 12, 18), (0.7, 0, 0.25), offset=(0, -2, 0)),),
-    "jaw_angle": (Bump("W14_1", (18, 16, 20), (0.35, -0.75, -0.45), offset=(0, -2, 4)),),
+    "jaw_angle": (Bump("W15_3", (18, 16, 20), (0.35, -0.75, -0.45), offset=(0, -2, 4)),),
     "jaw_line": (Bump("C8_6", (20, 13, 26), (0.6, -0.35, 0), offset=(-4, -4, 10)),),
     "neck_width": (
         Bump("C8_10", (70, 34, 70), stretch=(0.018, 0, 0.010), offset=(0, -42, -35)),

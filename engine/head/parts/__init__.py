@@ -1,4 +1,4 @@
-"""The parts drawn beside the skin: eyes, teeth, tongue, ears, brows, lashes, hair."""
+"""The parts drawn beside the skin: eyes, teeth, tongue, brows, lashes, hair."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from ..head import DrawnSurface, Part
 from ..recipe import STANDARD, Recipe
 from .brows import brow_line, brows_part
 from .caruncle import caruncle_parts
-from .ears import ear_parts
 from .eyes import eye_parts
 from .gums import gum_parts
 from .hair import hair_parts
@@ -33,7 +32,6 @@ def head_parts(
         *eye_parts(recipe),
         *caruncle_parts(lid_edge),
         tear_line_part(skin, lid_edge),
-        *ear_parts(),
         *teeth_parts(recipe),
         *gum_parts(),
         *palate_parts(),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .cheek import add_cheek
 from .crown import add_crown
+from .ear import add_ear
 from .eye import EYE_CENTER, EYE_RADIUS, add_eye
 from .forehead import add_forehead
 from .half import HalfCage
@@ -18,6 +19,7 @@ __all__ = [
     "HalfCage",
     "add_cheek",
     "add_crown",
+    "add_ear",
     "add_eye",
     "add_forehead",
     "add_mouth",

@@ -20,8 +20,8 @@ def test_authored_points_say_where_they_come_from() -> None:
 
 def test_size() -> None:
     cage = build_cage()
-    assert cage.points.shape == (1218, 3)
-    assert cage.faces.shape == (1188, 4)
+    assert cage.points.shape == (1790, 3)
+    assert cage.faces.shape == (1760, 4)
     assert (cage.faces[:, 3] < 0).sum() == 4
 
 
