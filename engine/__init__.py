@@ -19,7 +19,7 @@ from .errors import (
 from .facs import LETTERS, ActionUnit, Term, format_facs, parse_facs
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
-from .head import LEVELS, Person, Recipe, people
+from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .jaw import JawHinge
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import measure_units
@@ -72,6 +72,7 @@ __all__ = [
     "measure_units",
     "parse_facs",
     "people",
+    "recipe_attributes",
     "record",
     "rig_from_recipe",
     "rig_to_glb",

@@ -15,7 +15,7 @@ from .head import (
 )
 from .identity import Person, people, tissue_of_life
 from .mesh import head_from_mesh, read_head
-from .recipe import STANDARD, Recipe
+from .recipe import STANDARD, Recipe, recipe_attributes
 from .skin import LEVELS
 from .standard import paper_head, person_head, standard_head
 
@@ -38,6 +38,7 @@ __all__ = [
     "people",
     "person_head",
     "read_head",
+    "recipe_attributes",
     "standard_head",
     "tissue_of_life",
 ]

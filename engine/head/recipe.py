@@ -239,3 +239,21 @@ def _number(name: str, value: object) -> object:
 
 STANDARD = Recipe()
 """The built-in head."""
+
+
+def recipe_attributes() -> dict[str, dict[str, object]]:
+    """Return what can be asked of a recipe, by attribute: `default`, and `range` or `choices`.
+
+    An attribute that also takes words has them, with their numbers, as `words`.
+    """
+    described: dict[str, dict[str, object]] = {}
+    for name, default in STANDARD.to_json().items():
+        attribute: dict[str, object] = {"default": default}
+        if name in LIMITS:
+            attribute["range"] = list(LIMITS[name])
+        if name in _CHOICES:
+            attribute["choices"] = list(_CHOICES[name])
+        if name in _WORDS:
+            attribute["words"] = dict(_WORDS[name])
+        described[name] = attribute
+    return described

@@ -1,5 +1,7 @@
 // REST calls of the viewer, and the addresses it links to.
 
+import type { AttributeInfo, Recipe } from './recipe';
+
 /** Anything numeric in here can be edited; see tissueFields. */
 export type Tissue = Record<string, unknown>;
 
@@ -33,14 +35,16 @@ export interface RigInfo {
   action_units: ActionUnitInfo[];
   emotions: EmotionInfo[];
   tissue: Tissue;
+  /** What the person looks like; null where the face has no recipe. */
+  recipe: Recipe | null;
   mesh: Record<string, unknown>;
   /** Lowest and highest value of each pose axis, e.g. limits.jaw.pitch. */
   limits: Record<string, Record<string, [number, number]>>;
 }
 
-export interface PersonInfo {
-  name: string;
-  title: string;
+export interface People {
+  people: { name: string; title: string }[];
+  attributes?: Record<string, AttributeInfo>;
 }
 
 export interface SessionInfo {
@@ -69,9 +73,14 @@ export class Api {
     );
   }
 
-  /** The people that come with the service. */
-  async people(): Promise<PersonInfo[]> {
-    return ((await this.json('GET', 'api/people')) as { people: PersonInfo[] }).people;
+  /** The people that come with the service, and what can be asked of others. */
+  people(): Promise<People> {
+    return this.json('GET', 'api/people') as Promise<People>;
+  }
+
+  /** The rig of a person who looks like this. */
+  person(recipe: Recipe): Promise<{ id: string }> {
+    return this.json('POST', 'api/rigs', { recipe }) as Promise<{ id: string }>;
   }
 
   /** A person made by chance; the same seed makes the same one. */
@@ -149,6 +158,7 @@ function completeRig(asked: string, body: RigAnswer): RigInfo {
     action_units: named<ActionUnitInfo>(body.action_units),
     emotions: named<EmotionInfo>(body.emotions),
     tissue: body.tissue ?? {},
+    recipe: body.recipe ?? null,
     mesh: body.mesh ?? {},
     limits: { jaw: body.jaw ?? {}, gaze: body.gaze ?? {}, head: body.head ?? {} },
   };

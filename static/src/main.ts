@@ -19,6 +19,7 @@ import type { Actions } from './state/actions';
 import { describeRig, readable, tissuePatch } from './state/rig';
 import { ViewerState } from './state/viewer.svelte';
 import './style.css';
+import { debounce } from './throttle';
 import { TickRate } from './tick-rate';
 import { readPageOptions } from './url';
 
@@ -30,6 +31,7 @@ viewer.rigName = page.rig;
 viewer.view = page.view;
 document.body.classList.toggle('bare', page.bare);
 
+const PERSON_PAUSE_MS = 350;
 /** How many strangers there are to meet; any seed below 2^32 is one. */
 const STRANGERS = 2 ** 32;
 
@@ -158,6 +160,7 @@ async function showRig(id: string, isNew: boolean): Promise<void> {
   rigId = id;
   const described = await api.rig(id);
   if (rigId !== id) return;
+  viewer.recipe = described.recipe;
   const rig = describeRig(described);
   if (isNew) {
     viewer.rig = rig;
@@ -262,6 +265,11 @@ const actions: Actions = {
     connection.connect();
     if (left !== '') api.closeSession(left).catch(() => undefined);
   },
+  setPerson(attribute, value) {
+    if (viewer.recipe === null) return;
+    viewer.recipe[attribute] = value;
+    becomePerson();
+  },
   meetStranger() {
     viewer.meeting = true;
     api
@@ -285,6 +293,17 @@ const actions: Actions = {
     connection.connect();
   },
 };
+
+/** Make the person that the panel describes, once its sliders rest. */
+const becomePerson = debounce(() => {
+  if (viewer.recipe === null) return;
+  api
+    .person({ ...viewer.recipe })
+    .then(({ id }) => {
+      actions.switchRig(id);
+    })
+    .catch(sayWhy);
+}, PERSON_PAUSE_MS);
 
 function sayWhy(error: unknown): void {
   viewer.say(error instanceof Error ? error.message : 'That did not work.');
@@ -344,7 +363,8 @@ if (!page.bare) {
   mount(People, { target: element('people'), props: { viewer, actions, link } });
   api
     .people()
-    .then((people) => {
+    .then(({ people, attributes }) => {
+      viewer.attributes = attributes ?? {};
       viewer.people = people.map(({ name, title }) => ({ name, title, label: readable(name) }));
     })
     .catch(sayWhy);

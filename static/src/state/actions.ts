@@ -19,6 +19,8 @@ export interface Actions {
   switchRig(rig: string): void;
   /** The same on a person made by chance. */
   meetStranger(): void;
+  /** Change how the person looks, which makes another person. */
+  setPerson(attribute: string, value: number | string): void;
   setView(view: ViewName): void;
   /** Let go of every control. */
   reset(): void;

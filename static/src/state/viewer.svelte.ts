@@ -2,6 +2,7 @@
 
 import type { Held, Numbers } from '../protocol';
 import type { Group } from './actions';
+import type { AttributeInfo, Recipe } from '../recipe';
 import type { Rig } from './rig';
 
 /** Someone whose face can be opened. */
@@ -46,6 +47,10 @@ export class ViewerState {
   /** Name or id that the session was opened on, e.g. `standard`. */
   rigName = $state('');
   people = $state.raw<Person[]>([]);
+  /** What a person can be asked to look like. */
+  attributes = $state.raw<Record<string, AttributeInfo>>({});
+  /** What the one on the stage looks like; null for a face that has no recipe. */
+  recipe = $state<Recipe | null>(null);
   /** A stranger is being made. */
   meeting = $state(false);
   rig = $state.raw<Rig | null>(null);
