@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import pygltflib
 
-from .materials import MATERIALS
+from .materials import MATERIALS, Look
 
 Array = npt.NDArray[Any]
 Extras = Mapping[str, Any]
@@ -25,7 +25,7 @@ _COMPONENTS = {
     "uint16": pygltflib.UNSIGNED_SHORT,
     "uint8": pygltflib.UNSIGNED_BYTE,
 }
-_TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _SPARSE_GAIN = 0.8
 """A sparse accessor must be at least this much smaller, for it costs the reader a pass."""
 
@@ -68,7 +68,7 @@ class GlbBuilder:
     # Accessors
 
     def accessor(self, array: Array, *, target: int | None = None, bounds: bool = False) -> int:
-        """Store `array`, shape (n,) or (n, 3 or 4), and return its accessor.
+        """Store `array`, shape (n,) or (n, 2 to 4), and return its accessor.
 
         Args:
             array: float32, uint32, uint16 or uint8.
@@ -145,7 +145,7 @@ class GlbBuilder:
         material: str,
         targets: Sequence[Mapping[str, int]] = (),
     ) -> pygltflib.Primitive:
-        """Return triangles with vertex `attributes`, each shape (n,) or (n, 3 or 4)."""
+        """Return triangles with vertex `attributes`, each shape (n,) or (n, 2 to 4)."""
         stored = {
             name: self.accessor(
                 np.asarray(values), target=pygltflib.ARRAY_BUFFER, bounds=name == "POSITION"
@@ -183,8 +183,25 @@ class GlbBuilder:
     def _material(self, name: str) -> int:
         if name not in self._materials:
             material = _material_named(name)
+            picture = MATERIALS[name].picture
+            if picture is not None and material.pbrMetallicRoughness is not None:
+                texture = pygltflib.TextureInfo(index=self.picture(name, picture()))
+                material.pbrMetallicRoughness.baseColorTexture = texture
             self._materials[name] = self._append(self._gltf.materials, material)
         return self._materials[name]
+
+    def picture(self, name: str, png: bytes) -> int:
+        """Store a PNG and return the texture that shows it (specification, section 3.8)."""
+        view = self._view(np.frombuffer(png, np.uint8), None)
+        image = pygltflib.Image(name=name, mimeType="image/png", bufferView=view)
+        if not self._gltf.samplers:
+            # Linear between texels and between mip levels, clamped at the edges.
+            self._gltf.samplers.append(
+                pygltflib.Sampler(magFilter=9729, minFilter=9987, wrapS=33071, wrapT=33071)
+            )
+        source = self._append(self._gltf.images, image)
+        texture = pygltflib.Texture(source=source, sampler=0)
+        return self._append(self._gltf.textures, texture)
 
     # Nodes and animation
 
@@ -249,6 +266,13 @@ def _material_named(name: str) -> pygltflib.Material:
         pbrMetallicRoughness=pygltflib.PbrMetallicRoughness(
             baseColorFactor=list(look.color), metallicFactor=0.0, roughnessFactor=look.roughness
         ),
-        alphaMode="BLEND" if look.color[3] < 1 else "OPAQUE",
+        alphaMode=_alpha_mode(look),
+        alphaCutoff=look.cutoff,
         doubleSided=look.double_sided,
     )
+
+
+def _alpha_mode(look: Look) -> str:
+    if look.cutoff is not None:
+        return "MASK"
+    return "BLEND" if look.color[3] < 1 else "OPAQUE"

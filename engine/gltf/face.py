@@ -9,6 +9,7 @@ from ..frame import Frame
 from ..rig import Rig
 from .builder import Array, GlbBuilder, metres
 from .drawn import DrawnFace, roots_of, turn_with, unit_normals
+from .materials import look_name
 from .pose import RigidMotion, motions
 from .scene import file_extras, part_attributes, rigid_parts, skin_attributes
 
@@ -44,7 +45,7 @@ def face_to_glb(rig: Rig, frame: Frame) -> bytes:
     for part in rigid_parts(rig.head):
         own = moved[part.follows]
         placed = _placed(own.move(part.vertices), own.turn(part.normals), moved["head"])
-        add(part.name, {**part_attributes(part), **placed}, part.triangles, part.material)
+        add(part.name, {**part_attributes(part), **placed}, part.triangles, look_name(part))
     return builder.to_bytes()
 
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+from ..head.head import Part
+from ..head.parts.strand_texture import hair_texture
 
 
 @dataclass(frozen=True)
@@ -13,11 +17,15 @@ class Look:
         color: Linear red, green, blue and opacity, 0 to 1.
         roughness: 0 is a mirror, 1 is chalk.
         double_sided: Draw the back too; for ribbons, which have no inside.
+        picture: Makes the PNG that multiplies the colour, where it is part of the shape.
+        cutoff: Nothing is drawn where the picture is clearer than this.
     """
 
     color: tuple[float, float, float, float]
     roughness: float
     double_sided: bool = False
+    picture: Callable[[], bytes] | None = None
+    cutoff: float | None = None
 
 
 MATERIALS = {
@@ -28,4 +36,16 @@ MATERIALS = {
     "wet": Look(color=(1.0, 1.0, 1.0, 1.0), roughness=0.3),
     "teeth": Look(color=(1.0, 1.0, 1.0, 1.0), roughness=0.25),
     "hair": Look(color=(1.0, 1.0, 1.0, 1.0), roughness=0.7, double_sided=True),
+    "hair_cards": Look(
+        color=(1.0, 1.0, 1.0, 1.0),
+        roughness=0.6,
+        double_sided=True,
+        picture=hair_texture,
+        cutoff=0.3,
+    ),
 }
+
+
+def look_name(part: Part) -> str:
+    """Return which of `MATERIALS` a part is drawn with: hair with texture places is cards."""
+    return "hair_cards" if part.material == "hair" and part.uvs is not None else part.material

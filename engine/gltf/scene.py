@@ -22,6 +22,7 @@ from ..head.head import Head, Part
 from ..jaw import JawHinge
 from .builder import Array, GlbBuilder, metres
 from .drawn import unit_normals
+from .materials import look_name
 
 NECK_PIVOT = np.array([0.0, -90.0, -10.0])
 """Point that head yaw, pitch and roll turn about, head frame, mm: the middle of the neck."""
@@ -85,7 +86,7 @@ def add_rigid_parts(
             continue
         pivot = pivots[part.follows]
         attributes = part_attributes(part, origin=pivot.origin)
-        primitive = builder.primitive(attributes, part.triangles, material=part.material)
+        primitive = builder.primitive(attributes, part.triangles, material=look_name(part))
         builder.node(
             part_node_name(part),
             parent=pivot.node,
@@ -112,6 +113,8 @@ def part_attributes(part: Part, *, origin: FloatArray | float = 0.0) -> dict[str
     }
     if part.material != "cornea":  # it is clear: its colour is the material's
         attributes["COLOR_0"] = part.colors.clip(0, 1).astype(np.float32)
+    if part.uvs is not None:
+        attributes["TEXCOORD_0"] = part.uvs.astype(np.float32)
     if part.hair is not None:
         attributes["_HAIR"] = part.hair.astype(np.float32)
     return attributes

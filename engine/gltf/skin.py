@@ -10,6 +10,7 @@ import numpy.typing as npt
 from ..arrays import FloatArray
 from .builder import GlbBuilder, metres
 from .drawn import DrawnFace
+from .materials import look_name
 from .scene import Pivot, part_attributes, skin_attributes
 
 SMALLEST_TURN = 5e-3
@@ -60,7 +61,7 @@ def add_skin(
             builder.primitive(
                 {**part_attributes(part), "POSITION": metres(rest[piece])},
                 part.triangles,
-                material=part.material,
+                material=look_name(part),
                 targets=add_targets(builder, riding, smallest=smallest),
             )
         )

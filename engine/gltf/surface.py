@@ -12,6 +12,7 @@ from ..head.head import BULGE_HEIGHT, BULGE_POWER, BULGE_RADIUS, LID_GAP, Head
 from ..rig import Rig
 from .builder import GlbBuilder, compact_indices, metres
 from .drawn import DrawnFace, SkinNormals, roots_of
+from .materials import look_name
 from .scene import (
     Pivot,
     add_pivots,
@@ -119,7 +120,9 @@ def _eyes(head: Head) -> list[dict[str, object]]:
 
 def _add_strands(builder: GlbBuilder, head: Head, parent: Pivot) -> None:
     for part in DrawnFace.of(head).strands:
-        primitive = builder.primitive(part_attributes(part), part.triangles, material=part.material)
+        primitive = builder.primitive(
+            part_attributes(part), part.triangles, material=look_name(part)
+        )
         builder.node(
             part.name,
             parent=parent.node,

@@ -1,4 +1,4 @@
-"""Where cropped hair grows: inside an outline drawn on the head's profile."""
+"""Where scalp hair grows: inside an outline drawn on the head's profile, thinner with age."""
 
 from __future__ import annotations
 
@@ -7,36 +7,95 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray
 from .anatomy import smoothstep
 from .noise import noise
+from .recipe import STANDARD, Recipe
 
 # The hairline in the profile plane as (z, y), mm: forehead, temple, sideburn, round the ear, nape;
-# closed far outside the head.
-OUTLINE = np.array([
-    (101, 73), (89, 72.5), (78, 69.5), (67, 65), (57, 55), (49, 43), (44, 34), (33, 23), (25, 8),
-    (19, -8), (15, -24), (9, -30), (3, -26), (-3, -14), (-12, -8), (-27, -12), (-36, -30),
-    (-42, -58), (-50, -80), (-75, -88), (-120, -88), (-120, 140), (110, 140),
+# closed far outside the head. All three go through the same stations, so they can be blended.
+_BEHIND = (
+    (-3, 4), (-9, 11), (-19, 13), (-30, 8), (-38, -6), (-42, -28), (-46, -52), (-54, -72),
+    (-75, -86), (-120, -88), (-120, 140), (110, 140),
+)  # fmt: skip
+FEMALE_OUTLINE = np.array([
+    (101, 73.5), (88, 73), (80, 72.5), (71, 71.5), (63, 68.5), (57, 61), (53, 51), (49, 42),
+    (44, 34), (36, 25), (27, 14), (20, 3), (15, -6), (11, -13), (7, -15), (3, -11),
+    (0, -4), *_BEHIND,
 ], dtype=float)  # fmt: skip
-EAR_CENTER = np.array([-14.0, -6.0])
-EAR_RADII = np.array([8.0, 12.0])
-FADE = (-7.0, 11.0)
+MALE_OUTLINE = np.array([
+    (101, 73.5), (88, 73.5), (80, 75.5), (70, 78), (62, 76), (56, 66), (51.5, 55), (47, 44),
+    (43, 35), (35, 26), (27, 15), (21, 2), (18, -10), (15, -23), (9, -29), (3, -24),
+    (0, -8), *_BEHIND,
+], dtype=float)  # fmt: skip
+RECEDED_OUTLINE = np.array([
+    (101, 90), (78, 90), (66, 93), (54, 96), (44, 94), (40, 84), (43, 66), (44, 50), (41, 38),
+    (34, 27), (26, 15), (20, 2), (17, -10), (14, -23), (8, -29), (2, -24),
+    (0, -8), *_BEHIND,
+], dtype=float)  # fmt: skip
+FADE = (-5.0, 9.0)
 """Distance inside the outline [mm] over which hair grows from none to full."""
-SIDES = 0.66
-"""How densely hair grows at the sideburns and the nape, where it is cut shortest."""
-SIDES_BELOW = (42.0, -35.0)
-"""Heights [mm] between which it thins to that."""
+COVER_FADE = (-2.0, 11.0)
+"""The same for the scalp's shade, which lies deeper in, so that no edge of paint shows."""
+EDGE_NOISE = ((14.0, 6, 2.1), (5.0, 5, 1.5), (2.2, 7, 1.0))
+"""Unevenness of the outline: size of its blobs [mm], seed, depth [mm]."""
+
+RECESSION_BY_AGE = ((18, 25, 45, 65, 90), (0.0, 0.04, 0.16, 0.3, 0.4))
+"""How far towards `RECEDED_OUTLINE` a man's hairline has gone (Norwood II to III by fifty)."""
+RECEDING = 0.62
+"""The same with the style "receding", at least."""
+CROWN = np.array([0.0, 106.0, -46.0])
+CROWN_BALD = (24.0, 58.0)
+"""A receding head is bare this near to its crown, and full so far away, mm."""
+
+STYLE_COVER = {"bald": 0.34, "buzz": 0.62}
+"""How dark the scalp is shaded where hair is cut off; elsewhere it is hidden."""
+HIDDEN_SCALP = 0.94
 
 
-def hair_mask(vertices: FloatArray) -> FloatArray:
-    """Return how densely hair grows at points (n, 3), 0..1, shape (n,)."""
-    profile = vertices[:, [2, 1]]
-    distance = distance_inside(profile, OUTLINE)
-    # No hair grows under the ear.
-    under_ear = np.hypot(*((profile - EAR_CENTER) / EAR_RADII).T) - 1
-    distance = np.minimum(distance, under_ear * EAR_RADII.min())
-    distance += 1.1 * noise(vertices, 5.0, 5)
-    # The front hairline is softer and less even than the nape.
-    distance += 1.6 * noise(vertices, 11.0, 6) * smoothstep(40, 75, vertices[:, 2])
-    shorn = 1 - (1 - SIDES) * smoothstep(*SIDES_BELOW, vertices[:, 1])
-    return np.asarray(smoothstep(*FADE, distance) * shorn)
+def hair_mask(points: FloatArray, recipe: Recipe = STANDARD) -> FloatArray:
+    """Return how densely hair grows at points (n, 3) of reference space, 0..1, shape (n,)."""
+    return np.asarray(smoothstep(*FADE, _distance(points, recipe)) * _thinning(points, recipe))
+
+
+def scalp_cover(points: FloatArray, recipe: Recipe = STANDARD) -> FloatArray:
+    """Return how far hair and its roots hide the skin's own colour at points (n, 3), 0..1.
+
+    The scalp is to be painted so far towards `engine.head.hair_color.scalp_color`.
+    """
+    grown = smoothstep(*COVER_FADE, _distance(points, recipe)) * _thinning(points, recipe)
+    # The nape and the sideburns are cut shortest, and skin shows through.
+    shorn = 1 - 0.35 * smoothstep(-10, -70, points[:, 1])
+    cover = STYLE_COVER.get(recipe.hair_style, HIDDEN_SCALP)
+    return np.asarray(cover * grown * (shorn if recipe.hair_style not in ("bob", "curly") else 1))
+
+
+def recession(recipe: Recipe) -> float:
+    """Return how far the hairline has gone back, 0 to 1."""
+    usual = recipe.sex * float(np.interp(recipe.age, *RECESSION_BY_AGE))
+    return max(usual, RECEDING) if recipe.hair_style == "receding" else usual
+
+
+def outline(recipe: Recipe) -> FloatArray:
+    """Return the hairline in the profile plane as (z, y) [mm], closed, shape (k, 2)."""
+    grown = FEMALE_OUTLINE + recipe.sex * (MALE_OUTLINE - FEMALE_OUTLINE)
+    return np.asarray(grown + recession(recipe) * (RECEDED_OUTLINE - grown))
+
+
+def _distance(points: FloatArray, recipe: Recipe) -> FloatArray:
+    """Return how far inside the uneven hairline points (n, 3) lie [mm], shape (n,)."""
+    distance = distance_inside(points[:, [2, 1]], outline(recipe))
+    for size, seed, depth in EDGE_NOISE:
+        distance += depth * noise(points, size, seed + recipe.seed)
+    return distance
+
+
+def _thinning(points: FloatArray, recipe: Recipe) -> FloatArray:
+    """Return the share of hair that is left at points (n, 3), shape (n,)."""
+    left = np.ones(len(points))
+    if recipe.hair_style == "receding":
+        bare = smoothstep(*CROWN_BALD, np.linalg.norm(points - CROWN, axis=1))
+        top = smoothstep(62, 95, points[:, 1])
+        left *= (0.1 + 0.9 * bare) * (1 - 0.45 * top)
+    elder = smoothstep(50, 90, np.array(recipe.age)) * (0.25 + 0.25 * recipe.sex)
+    return np.asarray(left * (1 - float(elder) * smoothstep(60, 100, points[:, 1])))
 
 
 def distance_inside(points: FloatArray, outline: FloatArray) -> FloatArray:

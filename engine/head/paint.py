@@ -16,7 +16,7 @@ from ..arrays import FloatArray
 from .anatomy import smoothstep
 from .cage import Cage
 from .geometry import linear_rgb, vertex_normals
-from .hairline import hair_mask
+from .hairline import scalp_cover
 from .noise import noise
 from .parts.brows import brow_line
 from .subdivision import Limit
@@ -63,8 +63,8 @@ def painted(cage: Cage, limit: Limit, vertices: FloatArray) -> Paint:
     _paint_lips(canvas)
     canvas.blend(MOUTH, canvas.region("mouth_inner"))
     canvas.blend(NOSTRIL, 0.95 * canvas.region("nostril", blur=1))
-    canvas.blend(BROW_SHADE, 0.42 * _brow_mask(canvas))
-    hair = hair_mask(vertices)
+    canvas.blend(BROW_SHADE, 0.26 * _brow_mask(canvas))
+    hair = scalp_cover(vertices)
     # Where hair is thin the skin shows between it; the viewer draws the single hairs there.
     canvas.blend(SCALP_HAIR, 0.9 * hair**3)
     _paint_unevenness(canvas)
@@ -153,10 +153,12 @@ def _paint_lips(canvas: Canvas) -> None:
 
 
 def _brow_mask(canvas: Canvas) -> FloatArray:
-    share = np.clip((canvas.x - 13.5) / 40, 0, 1)
+    """Return where hairs of the brows shade the skin between them."""
+    start, end = brow_line(np.array([0.0, 1.0]))[0]
+    share = np.clip((canvas.x - start) / (end - start), 0, 1)
     _, middle, width = brow_line(share)
-    band = np.exp(-(((canvas.y - middle) / (0.62 * width)) ** 4))
-    ends = smoothstep(10, 15, canvas.x) * smoothstep(57, 51, canvas.x)
+    band = np.exp(-(((canvas.y - middle - 0.8) / (0.55 * width)) ** 2))
+    ends = smoothstep(start - 1, start + 7, canvas.x) * smoothstep(end + 1, end - 5, canvas.x)
     return np.asarray(band * ends * smoothstep(40, 60, canvas.z))
 
 

@@ -14,6 +14,7 @@ from ..cache import cached_arrays
 from ..errors import UnknownName
 from .cage import Cage, build_cage
 from .fairing import faired_points
+from .groom import groomed
 from .head import DrawnSurface, Eye, Head, Part
 from .identity import moved_arrays, person_from, with_moved
 from .landmarks import landmark_vertices
@@ -82,7 +83,7 @@ def person_head(recipe: Recipe, level: str = "high") -> Head:
     """
     if recipe == STANDARD:
         return standard_head(level)
-    reference = _reference(level)
+    reference = groomed(_reference(level), level, recipe)
     arrays = cached_arrays(
         "person",
         source_key(f"{level}-{recipe!r}"),

@@ -5,6 +5,7 @@ import type {
   BufferGeometry,
   Group,
   InterleavedBufferAttribute,
+  MeshStandardMaterial,
   Object3D,
 } from 'three';
 import {
@@ -22,6 +23,7 @@ import { createMaterial } from './materials';
 import { MovingNormals } from './normals';
 import { skinForm } from './skin-form';
 import { strandSides } from './strand-sides';
+import { strandTangents } from './strand-tangents';
 import { Strands } from './strands';
 import type { Eyeball } from './surface';
 import { DrawnSurface } from './surface';
@@ -399,8 +401,10 @@ function dress(root: Object3D, maps: FaceMaps): void {
     const inMouth = (kind === 'wet' || kind === 'teeth') && isInMouth(mesh);
     if (inMouth) darkenThroat(mesh, DARKEST[kind]);
     mesh.visible = mesh.userData.role !== 'tissue';
+    const { map } = mesh.material as MeshStandardMaterial;
     mesh.material = createMaterial(kind, {
       vertexColors: mesh.geometry.hasAttribute('color'),
+      map,
       inMouth,
       neckFade,
       maps: mesh.geometry.hasAttribute('uv') ? maps : null,
@@ -409,7 +413,7 @@ function dress(root: Object3D, maps: FaceMaps): void {
     mesh.receiveShadow = kind !== 'cornea';
     mesh.frustumCulled = false;
     mesh.renderOrder = DRAWN_AFTER[kind] ?? 0;
-    if (kind === 'hair') addStrandSides(mesh);
+    if (kind === 'hair') addStrandAttributes(mesh);
     if (kind === 'skin') {
       const positions = mesh.geometry.getAttribute('position');
       mesh.geometry.setAttribute('restPosition', positions.clone());
@@ -417,11 +421,15 @@ function dress(root: Object3D, maps: FaceMaps): void {
   }
 }
 
-function addStrandSides({ geometry }: Mesh<BufferGeometry>): void {
+function addStrandAttributes({ geometry }: Mesh<BufferGeometry>): void {
   const index = geometry.getIndex();
   if (index === null) throw new Error('Strands of hair have no triangles.');
   const positions = plainArray(geometry.getAttribute('position'));
-  const sides = strandSides(positions, plainArray(index));
+  const triangles = plainArray(index);
+  const tangents = strandTangents(positions, triangles);
+  geometry.setAttribute('strandTangent', new Float32BufferAttribute(tangents, 3));
+  if (geometry.hasAttribute('uv')) return; // cards are as wide as they are
+  const sides = strandSides(positions, triangles);
   geometry.setAttribute('strandSide', new Float32BufferAttribute(sides, 4));
 }
 

@@ -1,8 +1,13 @@
-// What hair adds to three's standard shader: a strand is never thinner than a pixel, only fainter.
+// What hair adds to three's standard shader: the two highlights along its strands, light that shines through,
+// strands that are never thinner than a pixel, and the soft cut of its cards.
 
 import { ShaderChunk } from 'three';
 import type { Program } from './shader-edit';
 import { replaced } from './shader-edit';
+import { softerShadows } from './soft-shadows';
+
+/** Half the least width of a drawn strand, in pixels across half the picture's height. */
+const LEAST_PIXELS = '1.15';
 
 const WIDEN = /* glsl */ `
 #include <project_vertex>
@@ -19,26 +24,110 @@ const WIDEN = /* glsl */ `
 }
 `;
 
-/** Half the least width of a drawn strand, in pixels across half the picture's height. */
-const LEAST_PIXELS = '1.3';
+const SIDES = `
+attribute vec4 strandSide;
+uniform float drawnHeight;
+varying float vCover;`;
+
+const TANGENT = /* glsl */ `
+#include <beginnormal_vertex>
+vStrand = normalize(mat3(modelViewMatrix) * strandTangent);
+`;
 
 /**
- * Change the program of a standard material into hair. Needs the attribute `strandSide` of strand-sides.ts.
+ * Marschner et al. 2003 as Kajiya-Kay lobes: a white one of the surface, shifted to the root, and a broader coloured
+ * one of light that was reflected inside, shifted to the tip; and light from behind that comes through.
+ */
+const LIGHT = /* glsl */ `
+varying vec3 vStrand;
+float strandShift = 0.0;
+
+float lobe(vec3 tangent, vec3 halfway, float sharpness) {
+  float along = dot(tangent, halfway);
+  return smoothstep(-1.0, 0.0, along) * pow(max(1.0 - along * along, 0.0), 0.5 * sharpness);
+}
+
+void RE_Direct_Hair(const in IncidentLight light, const in vec3 position, const in vec3 faces, const in vec3 view,
+    const in vec3 clearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
+  vec3 strand = normalize(vStrand);
+  vec3 halfway = normalize(light.direction + view);
+  float cosine = dot(faces, light.direction);
+  float lit = clamp((cosine + 0.3) / 1.3, 0.0, 1.0);
+  float facing = smoothstep(-0.25, 0.35, cosine);
+  float across = sqrt(max(1.0 - pow(dot(strand, light.direction), 2.0), 0.0));
+  vec3 color = material.diffuseContribution;
+  float brightness = max(max(color.r, color.g), max(color.b, 1e-4));
+  vec3 hue = color / brightness;
+  reflectedLight.directDiffuse += light.color * color * lit * (0.35 + 0.65 * across) * RECIPROCAL_PI * 1.15;
+
+  float white = lobe(normalize(strand - (0.12 + strandShift) * faces), halfway, 110.0);
+  float tinted = lobe(normalize(strand + (0.10 - strandShift) * faces), halfway, 26.0);
+  vec3 gloss = 0.015 * white + (0.16 * brightness + 0.006) * tinted * mix(hue, vec3(1.0), 0.12);
+  float behind = pow(clamp(dot(-light.direction, view) * 0.5 + 0.5, 0.0, 1.0), 6.0);
+  vec3 through = 0.55 * color * behind * across;
+  reflectedLight.directSpecular += light.color * (gloss * facing + through) * strandGlow;
+}
+#undef RE_Direct
+#define RE_Direct RE_Direct_Hair
+`;
+
+/** The roughness of a head of hair is the strands' scatter: its room is a soft glow, no mirror. */
+const SCATTER = /* glsl */ `
+#include <lights_physical_fragment>
+strandShift = 0.16 * (strandTone - 0.78);
+material.specularColor *= 0.35;
+material.specularColorBlended *= 0.35;
+`;
+
+/** Cards seen edge on would draw a hard line, and what is left is cut as finely as the samples of a pixel allow. */
+const CUT = /* glsl */ `
+#ifdef USE_MAP
+  vec3 cardFaces = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));
+  diffuseColor.a *= smoothstep(0.02, 0.38, abs(dot(cardFaces, normalize(vViewPosition))));
+  diffuseColor.a = clamp(diffuseColor.a * 1.2, 0.0, 1.0);
+  float grain = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  diffuseColor.a = clamp(diffuseColor.a + (grain - 0.5) * 0.22 * step(0.02, diffuseColor.a) * step(diffuseColor.a, 0.98), 0.0, 1.0);
+  if (diffuseColor.a < 0.04) discard;
+#endif
+`;
+
+/**
+ * Change the program of a physical material into hair. Needs the attributes of hair-attributes: `strandTangent`, and
+ * `strandSide` for single strands.
  * @throws Error when three's shader no longer has a line that is replaced here.
  */
-export function makeHair(program: Program, drawnHeight: { value: number }): void {
+export function makeHair(
+  program: Program,
+  { cards, drawnHeight }: { cards: boolean; drawnHeight: { value: number } },
+): void {
   program.uniforms.drawnHeight = drawnHeight;
+  const cut: [string, string][] = cards ? [['#include <alphatest_fragment>', CUT]] : [];
+  const strandOnly: [string, string][] = cards ? [] : [['#include <project_vertex>', WIDEN]];
   program.vertexShader = replaced(program.vertexShader, [
     [
       '#include <common>',
-      `#define LEAST_PIXELS ${LEAST_PIXELS}\n#include <common>\nattribute vec4 strandSide;\nuniform float drawnHeight;\nvarying float vCover;`,
+      `#define LEAST_PIXELS ${LEAST_PIXELS}\n#include <common>\nattribute vec3 strandTangent;\nvarying vec3 vStrand;${cards ? '' : SIDES}`,
     ],
-    ['#include <project_vertex>', WIDEN],
+    ['#include <beginnormal_vertex>', TANGENT],
+    ...strandOnly,
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
-    ['#include <common>', '#include <common>\nvarying float vCover;'],
-    ['#include <color_fragment>', '#include <color_fragment>\ndiffuseColor.a *= vCover;'],
+    [
+      '#include <common>',
+      `#include <common>\n${cards ? '' : 'varying float vCover;'}\nfloat strandTone = 0.78;\nfloat strandGlow = 1.0;`,
+    ],
+    [
+      '#include <map_fragment>',
+      '#include <map_fragment>\n#ifdef USE_MAP\nstrandTone = sampledDiffuseColor.r;\n#else\ndiffuseColor.a *= vCover;\n#endif',
+    ],
+    ...cut,
     ['#include <normal_fragment_begin>', unflippedNormals()],
+    [
+      '#include <lights_physical_pars_fragment>',
+      `#include <lights_physical_pars_fragment>\n${LIGHT}`,
+    ],
+    ['#include <lights_physical_fragment>', SCATTER],
+    ['#include <shadowmap_pars_fragment>', softerShadows()],
   ]);
 }
 

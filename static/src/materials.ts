@@ -1,13 +1,7 @@
 // How each kind of surface takes light: skin, eyes, wet mucosa, teeth, hair.
 
 import type { Material, MeshPhysicalMaterialParameters, Texture } from 'three';
-import {
-  AdditiveBlending,
-  DoubleSide,
-  MeshPhysicalMaterial,
-  MeshStandardMaterial,
-  Vector2,
-} from 'three';
+import { AdditiveBlending, DoubleSide, MeshPhysicalMaterial, Vector2 } from 'three';
 import { makeHair } from './hair-shader';
 import { createPores } from './pores';
 import { makeSkin } from './skin-shader';
@@ -19,6 +13,8 @@ export interface Setting {
   vertexColors: boolean;
   /** In the mouth, where the studio's soft boxes are not mirrored. */
   inMouth: boolean;
+  /** The picture that came with the surface; hair with one is made of cards, without one of strands. */
+  map: Texture | null;
   /** The neck dissolves into the background between these heights [mm]; null where there is no cut to hide. */
   neckFade: readonly [number, number] | null;
   /** The face's maps; null for a surface without texture coordinates. */
@@ -30,7 +26,7 @@ const NO_FADE = [-2000, -1999] as const;
 
 export function createMaterial(
   kind: string,
-  { vertexColors, inMouth, neckFade, maps }: Setting,
+  { vertexColors, inMouth, map, neckFade, maps }: Setting,
 ): Material {
   const envMapIntensity = inMouth ? 0.25 : 1;
   switch (kind) {
@@ -61,7 +57,7 @@ export function createMaterial(
         envMapIntensity,
       });
     case 'hair':
-      return hair(vertexColors);
+      return map === null ? strands(vertexColors) : cards(vertexColors, map);
     default:
       return skin(vertexColors, neckFade, maps);
   }
@@ -108,8 +104,8 @@ function pores(): Texture {
 }
 
 /** Strands are blended, so that those thinner than a pixel fade instead of breaking into dots. */
-function hair(vertexColors: boolean): Material {
-  const material = new MeshStandardMaterial({
+function strands(vertexColors: boolean): Material {
+  const material = new MeshPhysicalMaterial({
     vertexColors,
     color: vertexColors ? 0xffffff : 0x2a1a12,
     roughness: 0.7,
@@ -123,8 +119,27 @@ function hair(vertexColors: boolean): Material {
     drawnHeight.value = renderer.getDrawingBufferSize(size).y;
   };
   material.onBeforeCompile = (program) => {
-    makeHair(program, drawnHeight);
+    makeHair(program, { cards: false, drawnHeight });
   };
+  return material;
+}
+
+/** Cards hide what is behind them as far as samples of a pixel can, in any order. */
+function cards(vertexColors: boolean, map: Texture): Material {
+  map.anisotropy = 8;
+  const material = new MeshPhysicalMaterial({
+    vertexColors,
+    color: 0xffffff,
+    map,
+    roughness: 0.75,
+    side: DoubleSide,
+    alphaToCoverage: true,
+    alphaTest: 0.35,
+  });
+  material.onBeforeCompile = (program) => {
+    makeHair(program, { cards: true, drawnHeight: { value: 0 } });
+  };
+  material.customProgramCacheKey = () => 'hair cards';
   return material;
 }
 

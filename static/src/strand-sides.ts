@@ -7,7 +7,7 @@
  */
 export function strandSides(positions: ArrayLike<number>, index: ArrayLike<number>): Float32Array {
   const sides = new Float32Array((positions.length / 3) * 4);
-  for (const [first, last] of runs(index)) {
+  for (const [first, last] of strandRuns(index)) {
     for (let vertex = first; vertex < last; vertex++) {
       const left = vertex - ((vertex - first) % 2);
       setHalf(sides, vertex, positions, left);
@@ -20,7 +20,7 @@ export function strandSides(positions: ArrayLike<number>, index: ArrayLike<numbe
 }
 
 /** First and last vertex of each strand. */
-function runs(index: ArrayLike<number>): [number, number][] {
+export function strandRuns(index: ArrayLike<number>): [number, number][] {
   const found: [number, number][] = [];
   for (let at = 0; at < index.length; at += 3) {
     const corners = [index[at]!, index[at + 1]!, index[at + 2]!];

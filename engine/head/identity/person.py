@@ -125,6 +125,8 @@ def _part(part: Part, warp: Warp) -> Part:
     if part.name.startswith(IN_THE_MOUTH):
         return replace(part, vertices=part.vertices + warp.teeth_shift())
     vertices = warp(part.vertices)
+    if part.material == "hair":  # lit as the head under it, which a warp hardly turns
+        return replace(part, vertices=vertices)
     return replace(part, vertices=vertices, normals=vertex_normals(vertices, part.triangles))
 
 

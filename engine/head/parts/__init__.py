@@ -41,4 +41,11 @@ def head_parts(
     )
 
 
-__all__ = ["brow_line", "eye_texture", "hair_parts", "head_parts"]
+__all__ = [
+    "brow_line",
+    "brows_part",
+    "eye_texture",
+    "hair_parts",
+    "head_parts",
+    "lashes_part",
+]

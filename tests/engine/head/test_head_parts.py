@@ -47,7 +47,7 @@ def test_nothing_is_missing(head: Head) -> None:
         "brows",
         "lashes",
         "hair",
-        "hairline",
+        "flyaways",
     }
 
 
@@ -102,7 +102,7 @@ def test_jaw_carries_the_lower_teeth(head: Head) -> None:
     assert by_follower["teeth.upper"] == "skull"
 
 
-@pytest.mark.parametrize("name", ["brows", "lashes", "hairline"])
+@pytest.mark.parametrize("name", ["brows", "lashes"])
 def test_strands_ride_the_skin_under_them(head: Head, name: str) -> None:
     piece = part(head, name)
     assert piece.roots is not None
@@ -118,16 +118,10 @@ def test_brows_lie_over_the_eyes(head: Head) -> None:
     assert (brows[:, 0] > 0).mean() == pytest.approx(0.5, abs=0.05)
 
 
-def test_hair_stands_off_the_scalp(head: Head) -> None:
-    assert part(head, "hair").vertices[:, 1].max() > head.drawn.vertices[:, 1].max() + 1
-    riding = sum(len(part(head, name).vertices) for name in ("hairline", "brows", "lashes"))
-    assert riding < 13_000  # the viewer moves each, and a clip stores each for every shape
-
-
 def test_paper_has_a_back_to_its_mask(heads: dict[str, Head]) -> None:
     back = part(heads["paper"], "scalp")
     assert back.follows == "skull"
     assert back.vertices[:, 2].min() < -90
     assert back.hair is not None
-    assert back.hair[back.vertices[:, 1] > 60].min() > 0.9
+    assert back.hair[back.vertices[:, 1] > 90].min() > 0.5
     assert len(back.triangles) + len(heads["paper"].triangles) == 3_516
