@@ -27,6 +27,7 @@ from .mixing import hold_units, unit_key
 from .quality import judge
 from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig, rig_from_recipe
 from .simulator import FaceState, Simulator
+from .textures import texture_names, textures_of
 from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
 
 __all__ = [
@@ -80,5 +81,7 @@ __all__ = [
     "settled_units",
     "surface_to_glb",
     "targets_to_glb",
+    "texture_names",
+    "textures_of",
     "unit_key",
 ]

@@ -26,6 +26,8 @@ from engine import (
     people,
     rig_to_glb,
     surface_to_glb,
+    texture_names,
+    textures_of,
 )
 
 from .errors import Busy, NotFound, Unprocessable, refused_by_engine
@@ -35,6 +37,7 @@ from .store import Store
 _LOG = structlog.get_logger("rigs")
 _RIGS_IN_MEMORY = 64
 _FILES_IN_MEMORY = 16
+_TEXTURED_IN_MEMORY = 4
 _PASSING_SECONDS = 60.0
 _UNIT_FIELDS = {"muscles", "jaw", "title", "region"}
 _CHANGES = ("recipe", "tissue", "muscles", "action_units", "emotions", "name")
@@ -76,12 +79,16 @@ class Rigs:
         self._files_pool = ThreadPoolExecutor(1, thread_name_prefix="files")
         self._rigs: Shelf[Rig] = Shelf(_RIGS_IN_MEMORY, self._pool)
         self._files: Shelf[bytes] = Shelf(_FILES_IN_MEMORY, self._files_pool)
+        # A pool of its own: a bake takes seconds, and files must not wait behind it.
+        self._bakery = ThreadPoolExecutor(1, thread_name_prefix="textures")
+        self._textures: Shelf[Mapping[str, bytes]] = Shelf(_TEXTURED_IN_MEMORY, self._bakery)
         self._names: dict[str, str] = {}
 
     def close(self) -> None:
         """Stop the pools."""
         self._pool.shutdown(wait=True, cancel_futures=True)
         self._files_pool.shutdown(wait=True, cancel_futures=True)
+        self._bakery.shutdown(wait=True, cancel_futures=True)
 
     async def get(self, name: str) -> Rig:
         """Return the rig of that name (`standard`, `amara`) or id, also one that it had before.
@@ -174,6 +181,18 @@ class Rigs:
         """Return the tissue surface and its map to the drawn surface."""
         key = f"surface-{tag_of(rig, level)}"
         return await self._file(key, lambda: surface_to_glb(rig.at_level(level)))
+
+    def texture_names(self, rig: Rig) -> tuple[str, ...]:
+        """Return the files of a rig's textures; none for a head without any."""
+        return texture_names(rig)
+
+    def texture_tag(self, rig: Rig, file: str) -> str:
+        """Return what names one of a rig's textures as this engine bakes it."""
+        return f"{rig.id}-{file}-{_engine_stamp()}"
+
+    async def textures(self, rig: Rig) -> Mapping[str, bytes]:
+        """Return a rig's textures by file name, baked in the background when nobody has."""
+        return await self._textures.get(rig.id, lambda: textures_of(rig))
 
     async def file(self, key: str, make: Callable[[], bytes]) -> bytes:
         """Return another file that depends on its `key` alone."""

@@ -67,15 +67,25 @@ class SkinNormals:
 
     Attributes:
         triangles: Vertex indices, shape (t, 3).
-        gather: Sums triangles into their corners, sparse (d, t).
+        gather: Sums triangles into their corners and into all that lie there, sparse (d, t).
     """
 
     triangles: IntArray
     gather: sp.csr_array
 
     @classmethod
-    def of(cls, triangles: IntArray, count: int) -> SkinNormals:
-        """Prepare for a mesh of `count` vertices."""
+    def of(cls, triangles: IntArray, count: int, seams: IntArray | None = None) -> SkinNormals:
+        """Prepare for a mesh of `count` vertices.
+
+        Args:
+            triangles: Vertex indices, shape (t, 3).
+            count: Vertices.
+            seams: First vertex at the same place, shape (d,), where some are doubled: those share
+                one normal, so that the seam is not seen.
+        """
+        if seams is not None:
+            welded = cls.of(seams[triangles], count)
+            return cls(welded.triangles, sp.csr_array(welded.gather[seams]))
         corners = triangles.ravel()
         faces = np.repeat(np.arange(len(triangles)), 3)
         gather = sp.csr_array(
@@ -116,7 +126,7 @@ class DrawnFace:
     @classmethod
     def of(cls, head: Head) -> DrawnFace:
         """Prepare `head` for drawing."""
-        normals = SkinNormals.of(head.drawn.triangles, len(head.drawn.vertices))
+        normals = SkinNormals.of(head.drawn.triangles, len(head.drawn.vertices), head.drawn.seams)
         strands = tuple(part for part in head.parts if part.follows == "skin")
         return cls(head, strands, normals, normals(head.drawn.vertices))
 

@@ -117,15 +117,20 @@ def part_attributes(part: Part, *, origin: FloatArray | float = 0.0) -> dict[str
         attributes["TEXCOORD_0"] = part.uvs.astype(np.float32)
     if part.hair is not None:
         attributes["_HAIR"] = part.hair.astype(np.float32)
+    if part.uvs is not None:
+        attributes["TEXCOORD_0"] = part.uvs.astype(np.float32)
     return attributes
 
 
 def skin_attributes(head: Head, *, vertices: FloatArray | None = None) -> dict[str, Array]:
     """Return the skin's vertex attributes, at rest or at `vertices` [mm]."""
     drawn = head.drawn
-    return {
+    attributes: dict[str, Array] = {
         "POSITION": metres(drawn.vertices if vertices is None else vertices),
         "NORMAL": unit_normals(drawn.normals).astype(np.float32),
         "COLOR_0": drawn.colors.clip(0, 1).astype(np.float32),
         "_HAIR": drawn.hair.astype(np.float32),
     }
+    if drawn.uvs is not None:
+        attributes["TEXCOORD_0"] = drawn.uvs.astype(np.float32)
+    return attributes

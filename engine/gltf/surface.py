@@ -6,10 +6,13 @@ strands' roots are buffers, named in the nodes' extras by their accessor's index
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from ..head.head import BULGE_HEIGHT, BULGE_POWER, BULGE_RADIUS, LID_GAP, Head
 from ..rig import Rig
+from ..textures import texture_names
 from .builder import GlbBuilder, compact_indices, metres
 from .drawn import DrawnFace, SkinNormals, roots_of
 from .materials import look_name
@@ -31,6 +34,9 @@ STREAM_GRID = 2e-5
 def surface_to_glb(rig: Rig) -> bytes:
     """Return the surface file of `rig` as GLB: tissue, skin, map, parts, all at rest."""
     extras = file_extras(rig_id=rig.id, rig_name=rig.name)
+    textures = {Path(name).stem: f"textures/{name}" for name in texture_names(rig)}
+    if textures:
+        extras["textures"] = textures
     builder = GlbBuilder({**extras, "rate": STREAM_RATE, "grid": STREAM_GRID})
     pivots = add_pivots(builder, rig.head, rig.jaw)
     _add_tissue(builder, rig.head, pivots["head"])
@@ -75,8 +81,16 @@ def _add_skin(builder: GlbBuilder, head: Head, parent: Pivot) -> None:
             "landmarks": {name: int(vertex) for name, vertex in head.landmarks.items()},
             "regions": builder.accessor(head.drawn.regions.astype(np.uint16)),
             "region_names": list(head.drawn.region_names),
+            **_seams(builder, head),
         },
     )
+
+
+def _seams(builder: GlbBuilder, head: Head) -> dict[str, int]:
+    """Store the first drawn vertex at each one's place: doubles share their triangles' normals."""
+    if head.drawn.seams is None:
+        return {}
+    return {"seams": builder.accessor(compact_indices(head.drawn.seams))}
 
 
 def _map_buffers(builder: GlbBuilder, head: Head) -> dict[str, int]:

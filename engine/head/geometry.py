@@ -12,8 +12,18 @@ Mesh = tuple[FloatArray, IntArray]
 """Vertices [mm], shape (v, 3), and triangles, shape (t, 3)."""
 
 
-def vertex_normals(vertices: FloatArray, triangles: IntArray) -> FloatArray:
-    """Return unit normals (v, 3), the mean of the triangles around weighted by their areas."""
+def vertex_normals(
+    vertices: FloatArray, triangles: IntArray, seams: IntArray | None = None
+) -> FloatArray:
+    """Return unit normals (v, 3), the mean of the triangles around weighted by their areas.
+
+    Args:
+        vertices: Positions, shape (v, 3).
+        triangles: Shape (t, 3).
+        seams: First vertex at the same place, shape (v,), where some are doubled.
+    """
+    if seams is not None:
+        return vertex_normals(vertices, seams[triangles])[seams]
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     face = np.cross(b - a, c - a)
     normal = np.column_stack(

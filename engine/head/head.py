@@ -121,6 +121,12 @@ class DrawnSurface:
         region_names: The regions' names.
         map: Drawn displacement = map @ surface displacement, sparse (d, s).
         lids: The vertices that may not enter the eyes.
+        uvs: Place of each vertex on the textures, origin top left, shape (d, 2); None for a head
+            without textures.
+        reference: The same skin on the built-in head [mm], shape (d, 3): where textures and other
+            fields are looked up; None without textures.
+        seams: First vertex at the same place, shape (d,): where islands of the texture meet,
+            vertices are doubled and their normals are the same; None where none is doubled.
     """
 
     vertices: FloatArray
@@ -132,6 +138,9 @@ class DrawnSurface:
     region_names: tuple[str, ...]
     map: sp.csr_array
     lids: LidContact
+    uvs: FloatArray | None = None
+    reference: FloatArray | None = None
+    seams: IntArray | None = None
 
     def deform(self, displacements: FloatArray, eyes: Sequence[Eye]) -> FloatArray:
         """Return the drawn vertices [mm], shape (d, 3), of a displaced tissue surface.

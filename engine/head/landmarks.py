@@ -57,5 +57,6 @@ def landmark_vertices(cage: Cage, drawn: IntArray) -> dict[str, int]:
         wanted[f"{name}.L"] = left
         wanted[f"{name}.R"] = int(cage.mirror[left])
     place = np.full(max(int(drawn.max()) + 1, len(cage.points)), -1)
-    place[drawn] = np.arange(len(drawn))
+    # The first of several at one place.
+    place[drawn[::-1]] = np.arange(len(drawn))[::-1]
     return {name: int(place[point]) for name, point in wanted.items() if place[point] >= 0}

@@ -43,10 +43,17 @@ BROW_SHADE = (0.25, 0.16, 0.115)
 
 @dataclass(frozen=True, eq=False)
 class Paint:
-    """Colours of the finest level: linear RGB, shape (d, 3), and hair mask in 0..1, shape (d,)."""
+    """Colours of the finest level.
+
+    Attributes:
+        colors: Linear RGB, shape (d, 3).
+        hair: Hair mask in 0..1, shape (d,).
+        reference: Positions on the built-in head [mm], shape (d, 3).
+    """
 
     colors: FloatArray
     hair: FloatArray
+    reference: FloatArray
 
 
 def painted(cage: Cage, limit: Limit, vertices: FloatArray) -> Paint:
@@ -69,7 +76,7 @@ def painted(cage: Cage, limit: Limit, vertices: FloatArray) -> Paint:
     canvas.blend(SCALP_HAIR, 0.9 * hair**3)
     _paint_unevenness(canvas)
     _paint_shade(canvas)
-    return Paint(linear_rgb(canvas.colors), hair)
+    return Paint(linear_rgb(canvas.colors), hair, vertices)
 
 
 class Canvas:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,6 +17,7 @@ from .paint import Paint
 from .subdivision import Limit
 from .surface_map import surface_map
 from .tissue_surface import symmetric_triangles
+from .uv import CHARTS, Unwrap
 
 LEVELS = {"low": 0, "medium": 1, "high": 2}
 """Refinements of the cage where the face lives; scalp, neck and throat have one fewer."""
@@ -35,6 +36,9 @@ class SkinMesh:
         vertices: Positions [mm], shape (d, 3).
         triangles: Shape (t, 3).
         cage_faces: Cage face that each triangle belongs to, shape (t,).
+        uvs: Place of each vertex on the textures, shape (d, 2), once it has one.
+        seams: First vertex at the same place, shape (d,), once there are doubles; the doubles come
+            last.
     """
 
     level: int
@@ -42,6 +46,8 @@ class SkinMesh:
     vertices: FloatArray
     triangles: IntArray
     cage_faces: IntArray
+    uvs: FloatArray | None = None
+    seams: IntArray | None = None
 
 
 def skin_mesh(cage: Cage, limit: Limit, points: FloatArray, level: int) -> SkinMesh:
@@ -66,6 +72,29 @@ def skin_mesh(cage: Cage, limit: Limit, points: FloatArray, level: int) -> SkinM
     return SkinMesh(level, used, vertices[used], renumbered.reshape(-1, 3), faces)
 
 
+def textured(mesh: SkinMesh, unwrap: Unwrap) -> SkinMesh:
+    """Return the skin laid out on the textures, its vertices doubled where islands meet."""
+    charts = unwrap.charts(mesh.indices[mesh.triangles], mesh.cage_faces)
+    count = len(mesh.indices)
+    keys, corners = np.unique(mesh.triangles * CHARTS + charts, return_inverse=True)
+    vertex, chart = keys // CHARTS, keys % CHARTS
+    doubled = np.r_[False, vertex[1:] == vertex[:-1]]
+    place = vertex.copy()
+    place[doubled] = count + np.arange(doubled.sum())
+    seams = np.r_[np.arange(count), vertex[doubled]]
+    indices = mesh.indices[seams]
+    uvs = np.zeros((len(seams), 2))
+    uvs[place] = unwrap.at(indices[place], chart)
+    return replace(
+        mesh,
+        indices=indices,
+        vertices=mesh.vertices[seams],
+        triangles=place[corners].reshape(-1, 3),
+        uvs=uvs,
+        seams=seams,
+    )
+
+
 def drawn_surface(
     cage: Cage,
     limit: Limit,
@@ -84,7 +113,12 @@ def drawn_surface(
         surface_points: Cage index of each tissue point, shape (s,).
         eyes: The eyes to stay clear of.
     """
-    carried = surface_map(limit, mesh.level, mesh.indices, surface_points)
+    first = len(mesh.indices)
+    if mesh.seams is not None:
+        first = int((mesh.seams == np.arange(first)).sum())
+    carried = surface_map(limit, mesh.level, mesh.indices[:first], surface_points)
+    if mesh.seams is not None:
+        carried = sp.csr_array(carried[mesh.seams])
     return _finished(cage, mesh, paint, carried, eyes)
 
 
@@ -101,7 +135,7 @@ def _finished(
     regions = vertex_regions(cage, mesh, names)
     return DrawnSurface(
         vertices=mesh.vertices,
-        normals=vertex_normals(mesh.vertices, mesh.triangles),
+        normals=vertex_normals(mesh.vertices, mesh.triangles, mesh.seams),
         triangles=mesh.triangles,
         colors=paint.colors[mesh.indices],
         hair=paint.hair[mesh.indices],
@@ -109,6 +143,9 @@ def _finished(
         region_names=names,
         map=carried,
         lids=_lid_contact(cage, mesh, eyes),
+        uvs=mesh.uvs,
+        reference=None if mesh.uvs is None else paint.reference[mesh.indices],
+        seams=mesh.seams,
     )
 
 
@@ -118,8 +155,9 @@ def vertex_regions(cage: Cage, mesh: SkinMesh, names: Sequence[str]) -> IntArray
     region = np.array([number[name] for name in cage.regions])[mesh.cage_faces]
     shape = (len(mesh.vertices), len(names))
     votes = np.zeros(shape)
-    np.add.at(votes, (mesh.triangles, region[:, None]), 1.0)
-    return np.asarray(votes.argmax(axis=1))
+    seams = np.arange(len(votes)) if mesh.seams is None else mesh.seams
+    np.add.at(votes, (seams[mesh.triangles], region[:, None]), 1.0)
+    return np.asarray(votes.argmax(axis=1)[seams])
 
 
 def _lid_contact(cage: Cage, mesh: SkinMesh, eyes: Sequence[Eye]) -> LidContact:

@@ -22,11 +22,12 @@ from .paint import Paint, painted
 from .parts import hair_parts, head_parts
 from .patches import EYE_CENTER, EYE_RADIUS
 from .recipe import STANDARD, Recipe
-from .skin import LEVELS, SkinMesh, drawn_surface, skin_mesh, tissue_as_drawn
+from .skin import LEVELS, SkinMesh, drawn_surface, skin_mesh, textured, tissue_as_drawn
 from .storage import head_from_arrays, head_to_arrays, source_key
 from .subdivision import Limit, cage_level, limit_surface
 from .tissue_surface import TissueSurface, face_sheet, symmetric_triangles, tissue_surface
 from .topology import Topology
+from .uv import Unwrap, unwrap
 
 # Semi-sharp creases along rows of the cage; chosen by eye.
 CREASES = (
@@ -126,9 +127,18 @@ def _standard(level: str) -> Head:
     sculpture = sculpt()
     cage, limit = sculpture.cage, sculpture.limit
     tissue = tissue_surface(cage, sculpture.points, face_sheet(cage))
-    mesh = skin_mesh(cage, limit, sculpture.points, LEVELS[level])
+    mesh = textured(skin_mesh(cage, limit, sculpture.points, LEVELS[level]), _unwrapped(sculpture))
     drawn = drawn_surface(cage, limit, mesh, sculpture.paint, tissue.cage_points, sculpture.eyes)
     return _assembled("standard", sculpture, tissue, mesh, drawn, hair_parts(drawn))
+
+
+def _unwrapped(sculpture: Sculpture) -> Unwrap:
+    arrays = cached_arrays(
+        "uvs",
+        source_key("uvs"),
+        lambda: vars(unwrap(sculpture.cage, sculpture.limit, sculpture.points)),
+    )
+    return Unwrap(**arrays)  # type: ignore[arg-type]
 
 
 def _paper() -> Head:

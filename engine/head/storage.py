@@ -19,6 +19,7 @@ HEAD_ARRAYS = (
     "follow_jaw", "teeth",
 )  # fmt: skip
 DRAWN_ARRAYS = ("vertices", "normals", "triangles", "colors", "hair", "regions")
+TEXTURE_ARRAYS = ("uvs", "reference", "seams")
 LID_ARRAYS = ("vertices", "eyes", "clearance")
 PART_ARRAYS = ("vertices", "normals", "triangles", "colors", "roots", "hair", "uvs")
 
@@ -45,6 +46,9 @@ def head_to_arrays(head: Head) -> Arrays:
     arrays: Arrays = {name: getattr(head, name) for name in HEAD_ARRAYS}
     arrays |= _matrix_to_arrays("follow", head.follow)
     arrays |= {f"drawn.{name}": getattr(drawn, name) for name in DRAWN_ARRAYS}
+    for name in TEXTURE_ARRAYS:
+        if getattr(drawn, name) is not None:
+            arrays[f"drawn.{name}"] = getattr(drawn, name)
     arrays |= _matrix_to_arrays("drawn.map", drawn.map)
     arrays |= {f"lids.{name}": getattr(drawn.lids, name) for name in LID_ARRAYS}
     for index, part in enumerate(head.parts):
@@ -71,6 +75,7 @@ def head_from_arrays(arrays: Arrays) -> Head:
     rest = json.loads(arrays["rest"].tobytes())
     drawn = DrawnSurface(
         **{name: arrays[f"drawn.{name}"] for name in DRAWN_ARRAYS},  # type: ignore[arg-type]
+        **{name: arrays.get(f"drawn.{name}") for name in TEXTURE_ARRAYS},  # type: ignore[arg-type]
         region_names=tuple(rest["region_names"]),
         map=_matrix_from_arrays("drawn.map", arrays),
         lids=LidContact(**{name: arrays[f"lids.{name}"] for name in LID_ARRAYS}),  # type: ignore[arg-type]

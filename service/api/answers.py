@@ -57,10 +57,15 @@ class GlbResponse(Response):
 
 def tagged_glb(request: Request, data: bytes, tag: str) -> Response:
     """Return a GLB that depends on its tag alone, or 304 if the client has it."""
+    return tagged(request, data, tag, GLB)
+
+
+def tagged(request: Request, data: bytes, tag: str, media_type: str) -> Response:
+    """Return bytes that depend on their tag alone, or 304 if the client has them."""
     headers = {"ETag": f'"{tag}"', "Cache-Control": "no-cache"}
     if client_has(request, tag):
         return Response(status_code=304, headers=headers)
-    return GlbResponse(data, headers=headers)
+    return Response(data, media_type=media_type, headers=headers)
 
 
 def client_has(request: Request, tag: str) -> bool:

@@ -1,0 +1,52 @@
+"""The baking of all maps of a head, one after the other."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from ..head import Head
+from ..recipe import Recipe
+from .albedo import albedo
+from .pigment import srgb
+from .texels import Texels
+from .zones import Surface, zones_of
+
+TEXTURE_NAMES = ("albedo.jpg",)
+"""Files of a head's textures, as they are served."""
+ALBEDO_SIZE, MAP_SIZE = 2048, 1024
+ALBEDO_QUALITY, MAP_QUALITY = 85, 90
+
+
+def head_textures(head: Head, recipe: Recipe) -> dict[str, bytes]:
+    """Return the files of a head's textures by name; none for a head without a map of its skin.
+
+    Args:
+        head: The person's head.
+        recipe: The person.
+    """
+    drawn = head.drawn
+    if drawn.uvs is None or drawn.reference is None:
+        return {}
+    zones = zones_of(Surface.of(drawn))
+    fine = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, ALBEDO_SIZE)
+    colors = srgb_bytes(albedo(fine, zones, drawn.reference, recipe))
+    return {"albedo.jpg": jpeg(fine.image(colors), ALBEDO_QUALITY)}
+
+
+def srgb_bytes(linear: npt.NDArray[np.float32]) -> npt.NDArray[np.uint8]:
+    """Return linear light as sRGB of 8 bits."""
+    return np.asarray(_SRGB[np.clip(linear * (len(_SRGB) - 1), 0, len(_SRGB) - 1).astype(np.int64)])
+
+
+_SRGB = (srgb(np.linspace(0, 1, 2**14)) * 255 + 0.5).astype(np.uint8)
+
+
+def jpeg(image: npt.NDArray[np.generic], quality: int) -> bytes:
+    """Return an image of 8 bits, shape (h, w, 3), as JPEG."""
+    file = io.BytesIO()
+    Image.fromarray(image.astype(np.uint8)).save(file, "JPEG", quality=quality, subsampling=0)
+    return file.getvalue()
