@@ -119,6 +119,29 @@ def test_the_paper_s_face_opens(page: playwright_api.Page, url: str, tmp_path: P
     assert len(shades) > 100
 
 
+def test_the_camera_goes_close_and_round(
+    page: playwright_api.Page, url: str, tmp_path: Path
+) -> None:
+    page.goto(f"{url}/?bare=1&view=eye")
+    settle(page)
+    page.wait_for_function("() => window.__viewer.textured")
+    pictures = []
+    for view in ("eye", "mouth", "-50"):
+        page.evaluate("view => window.__viewer.setView(view)", view)
+        page.evaluate("() => window.__viewer.render()")
+        page.screenshot(path=tmp_path / f"{view}.png")
+        with Image.open(tmp_path / f"{view}.png") as picture:
+            pictures.append(picture.convert("RGB"))
+    # Skin fills a close-up to its corners; of the head, one sees what is behind it.
+    backdrop = pictures[2].getpixel((4, 4))
+    assert sum(backdrop) < 200
+    assert sum(pictures[0].getpixel((60, 120))) > sum(backdrop) + 60
+    for one, other in ((0, 1), (1, 2)):
+        assert ImageChops.difference(pictures[one], pictures[other]).getbbox() is not None
+    with pytest.raises(playwright_api.Error, match="There is no view"):
+        page.evaluate("() => window.__viewer.setView('behind')")
+
+
 @pytest.mark.usefixtures("browser")
 def test_a_sheet_is_drawn(tmp_path: Path) -> None:
     output = tmp_path / "sheet.png"
