@@ -351,9 +351,7 @@ class Rig:
         )
         return replace(
             after,
-            parameters=replace(
-                after.parameters, **_differences(self.parameters, before.parameters)
-            ),
+            parameters=after.parameters.edited(self.parameters.edits_of(before.parameters)),
             muscles=muscles,
             action_units=self.action_units,
             emotions=self.emotions,
@@ -455,14 +453,23 @@ def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high"
     rig = rig_from_head(
         person_head(recipe),
         parameters=TissueParameters().edited(tissue_of_life(recipe)),
+        fitted_on=person_head(STANDARD),
     )
     rig = replace(rig, name=name, recipe=recipe)
     return rig if level == "high" else rig.at_level(level)
 
 
-def rig_from_head(head: Head, *, parameters: TissueParameters) -> Rig:
-    """Return `head` with the built-in muscles, action units and emotions on it."""
-    left = load_muscles(head)
+def rig_from_head(
+    head: Head, *, parameters: TissueParameters, fitted_on: Head | None = None
+) -> Rig:
+    """Return `head` with the built-in muscles, action units and emotions on it.
+
+    Args:
+        head: Any head.
+        parameters: Of its tissue.
+        fitted_on: The head on which the muscles' reaches were fitted, to which they scale.
+    """
+    left = load_muscles(head, fitted_on)
     muscles: list[Muscle] = []
     for muscle in left:
         muscles.append(muscle)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from importlib import resources
 from typing import Any
@@ -12,17 +13,28 @@ from .facs import ActionUnit
 from .head import Head
 from .muscle import KINDS, Muscle, Point
 
+_SIZED_FIELDS = ("radius", "semi_major", "upper", "lower")
 _POINT_FIELDS = ("attachment", "insertion", "center", "plane")
 
 
-def load_muscles(head: Head) -> list[Muscle]:
+def load_muscles(head: Head, fitted_on: Head | None = None) -> list[Muscle]:
     """Return the left and midline muscles on `head`.
 
     Ends are stored as a named point of the cage plus an offset, so that they follow the head's
     shape; a head without named points takes the stored head-frame coordinates instead.
+
+    Args:
+        head: Any head.
+        fitted_on: The head on which their reaches were fitted; a muscle that is longer on `head`
+            reaches farther in proportion. Without it reaches stay as they are stored.
     """
     entries = _read("muscles.json")["muscles"]
-    return [_muscle(entry, head) for entry in entries]
+    return [
+        _muscle(
+            entry, head, 1.0 if fitted_on is None else _span(entry, head) / _span(entry, fitted_on)
+        )
+        for entry in entries
+    ]
 
 
 def load_action_units() -> dict[str, ActionUnit]:
@@ -45,8 +57,11 @@ def load_emotions() -> dict[str, Emotion]:
     return emotions
 
 
-def _muscle(entry: Mapping[str, Any], head: Head) -> Muscle:
+def _muscle(entry: Mapping[str, Any], head: Head, size: float) -> Muscle:
     values = dict(entry)
+    for name in _SIZED_FIELDS:
+        if name in values:
+            values[name] = values[name] * size
     kind = values.pop("kind")
     if values.pop("paired"):
         values["name"] = f"{values['name']}.L"
@@ -60,6 +75,26 @@ def _muscle(entry: Mapping[str, Any], head: Head) -> Muscle:
     if "normal" in values:
         values["normal"] = tuple(values["normal"])
     return KINDS[kind](**values)
+
+
+def _span(entry: Mapping[str, Any], head: Head) -> float:
+    """Return what of `head` the muscle's size goes with: a length, mm, or an angle."""
+    if entry["name"] == "orbicularis_oculi_pretarsal":  # It closes the eye, however far it is open.
+        edges = [
+            head.points[head.point(f"E1_{spoke}.L")] - head.eyes[0].center for spoke in (4, 12)
+        ]
+        return math.atan2(edges[0][1], edges[0][2]) - math.atan2(edges[1][1], edges[1][2])
+    if entry["name"].startswith("orbicularis_oris"):
+        ends = [head.points[head.point(f"M1_5.{side}")] for side in "LR"]
+        return math.dist(*ends)
+    if "insertion" not in entry:
+        return 1.0
+    middles = []
+    for name in ("attachment", "insertion"):
+        ends = entry[name] if isinstance(entry[name], list) else [entry[name]]
+        places = [_place(end, head) for end in ends]
+        middles.append([sum(axis) / len(places) for axis in zip(*places, strict=True)])
+    return math.dist(*middles)
 
 
 def _place(end: Mapping[str, Any], head: Head) -> Point:

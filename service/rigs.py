@@ -147,6 +147,9 @@ class Rigs:
         root, all_changes = known, changes
         if before is not None:
             root, all_changes = before.base, merged_changes(before.changes, changes)
+        if rig.recipe is not None and "recipe" in all_changes:
+            # In full: what is left out may change with the engine, a person may not.
+            all_changes = {**all_changes, "recipe": rig.recipe.to_json()}
         self._store.add_rig(rig.id, base=root, changes=all_changes, passing=passing)
         self._rigs.put(rig.id, rig)
         return rig, True

@@ -7,7 +7,7 @@ the Head and Face", 1994), so that 0 is the typical face and ±2 holds nineteen 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 
 from ..errors import InvalidValue, UnknownName
@@ -132,11 +132,12 @@ class Recipe:
         skin: Tone, 0 very light to 1 dark; also a name of `SKIN_TONES`.
         undertone: -1 cool (pink) to 1 warm (golden); also "cool", "neutral", "warm".
         freckles: 0 none to 1 many.
-        stubble: Beard shadow, 0 shaven close to 1 three days' growth.
+        stubble: Beard shadow, 0 shaven close to 1 three days' growth; goes with sex where it is
+            not given.
         eye_color: One of `EYE_COLORS`.
         hair_color: One of `HAIR_COLORS`, before it greys.
         hair_style: One of `HAIR_STYLES`.
-        grayness: Share of grey hair, 0 to 1.
+        grayness: Share of grey hair, 0 to 1; goes with age where it is not given.
         asymmetry: Natural difference of the two sides, seen only; 0 none, 1 usual.
         seed: Chooses the small things: freckles, pores, the sides' difference.
     """
@@ -218,7 +219,15 @@ class Recipe:
             if name not in known:
                 raise UnknownName("recipe attribute", name, known)
             given[name] = _number(name, value)
-        return replace(base or STANDARD, **given)  # type: ignore[arg-type]
+        before = base or STANDARD
+        recipe = replace(before, **given)  # type: ignore[arg-type]
+        # What was usual for the sex and the age before is what is usual now.
+        usual = {
+            name: find(recipe)
+            for name, find in USUAL.items()
+            if name not in given and getattr(before, name) == find(before)
+        }
+        return replace(recipe, **usual)  # type: ignore[arg-type]
 
     def to_json(self) -> dict[str, object]:
         """Return every attribute as plain data."""
@@ -257,3 +266,21 @@ def recipe_attributes() -> dict[str, dict[str, object]]:
             attribute["words"] = dict(_WORDS[name])
         described[name] = attribute
     return described
+
+
+def usual_grayness(recipe: Recipe) -> float:
+    """Return the share of grey hair usual at the recipe's age: half of it at 55 (Panhard 2012)."""
+    risen = 1.0 / (1.0 + math.exp(-(recipe.age - 55.0) / 7.0)) - 0.03
+    return round(max(0.0, risen), 3) if recipe.age > 30.0 else 0.0
+
+
+def usual_stubble(recipe: Recipe) -> float:
+    """Return the beard shadow usual for the recipe's sex."""
+    return round(0.35 * recipe.sex, 3)
+
+
+USUAL: Mapping[str, Callable[[Recipe], float]] = {
+    "grayness": usual_grayness,
+    "stubble": usual_stubble,
+}
+"""Attributes that go with sex and age unless they are given."""

@@ -71,9 +71,7 @@ def standard_head(level: str = "high") -> Head:
     Raises:
         UnknownName: There is no such level.
     """
-    if level not in LEVELS:
-        raise UnknownName("level of detail", level, LEVELS)
-    return _cached(f"standard-{level}", lambda: _standard(level))
+    return person_head(STANDARD, level)
 
 
 def person_head(recipe: Recipe, level: str = "high") -> Head:
@@ -82,9 +80,9 @@ def person_head(recipe: Recipe, level: str = "high") -> Head:
     Raises:
         UnknownName: There is no such level.
     """
-    if recipe == STANDARD:
-        return standard_head(level)
-    reference = groomed(_reference(level), level, recipe)
+    if level not in LEVELS:
+        raise UnknownName("level of detail", level, LEVELS)
+    reference = groomed(reference_head(level), level, recipe)
     arrays = cached_arrays(
         "person",
         source_key(f"{level}-{recipe!r}"),
@@ -94,9 +92,9 @@ def person_head(recipe: Recipe, level: str = "high") -> Head:
 
 
 @lru_cache(maxsize=len(LEVELS))
-def _reference(level: str) -> Head:
+def reference_head(level: str) -> Head:
     """Return the head that all people are made from; what a warp leaves as it is, they share."""
-    return standard_head(level)
+    return _cached(f"standard-{level}", lambda: _standard(level))
 
 
 def paper_head() -> Head:

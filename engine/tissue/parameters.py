@@ -146,6 +146,20 @@ class TissueParameters:
         number = _number(name, value)
         return round(number) if isinstance(old, int) else number
 
+    def edits_of(self, before: TissueParameters) -> dict[str, object]:
+        """Return the changes that make these parameters of others, as `edited` takes them."""
+        edits: dict[str, object] = {}
+        for f in fields(self):
+            now, old = getattr(self, f.name), getattr(before, f.name)
+            if now == old:
+                continue
+            if isinstance(now, Layered):
+                layers = {layer: getattr(now, layer) for layer in LAYERS}
+                edits[f.name] = {k: v for k, v in layers.items() if v != getattr(old, k)}
+            else:
+                edits[f.name] = now
+        return edits
+
     def to_json(self) -> dict[str, object]:
         """Return the parameters as plain data."""
         return asdict(self)

@@ -36,8 +36,8 @@ NAMED_BY: Mapping[str, Mapping[str, float]] = {
 
 Nose and upper lip share in a long face, and the head in a wide one, as they do in people.
 """
-DERIVED = ("sn-gn", "ex-ex")
-"""Measures that follow from the others: n-gn without n-sn, and the eyes with what is between."""
+DERIVED = ("sn-gn", "ex-ex", "v-gn")
+"""Measures that follow from others: n-gn without n-sn; the eyes and what is between; n-gn."""
 FITTED = (*MEASURED, "fissure", "opening")
 
 # Millimetres of each mode for one standard deviation of the recipe's attribute.
@@ -47,7 +47,7 @@ PER_STANDARD_DEVIATION: Mapping[str, Mapping[str, float]] = {
     "brow_height": {"brow_height": 1.6},
     "eye_slant": {"slant": 1.0},
     "eye_depth": {"eye_depth": 1.2},
-    "lid_fold": {"fold": 1.0, "crease": 0.5, "epicanthus": 0.6},
+    "lid_fold": {"fold": 1.7, "crease": 1.1, "epicanthus": 1.1},
     "nose_bridge": {"nose_bridge": 1.5, "nose_root_width": -0.5},
     "nose_hump": {"nose_hump": 1.0},
     "nose_tip": {"nose_tip": 1.3},
@@ -150,7 +150,7 @@ def amplitudes_of(recipe: Recipe, warped: Warped) -> dict[str, float]:
         return {}
     names = list(wanted)
     scale = np.array([norms(recipe.sex)[name].sd for name in names])
-    weight = np.array([0.15 if name in DERIVED else 1.0 for name in names])
+    weight = np.array([0.1 if name in DERIVED else 1.0 for name in names])
     goal = np.array([wanted[name] for name in names])
 
     def residual(values: FloatArray) -> FloatArray:

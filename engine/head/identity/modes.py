@@ -18,17 +18,11 @@ MEASURED: Mapping[str, tuple[Term, ...]] = {
     "nose_length": (Ramp("n", "sn", "y", (0, -1, 0), 5.0, **_FRONT),),  # type: ignore[arg-type]
     "upper_lip": (Ramp("sn", "M0_0", "y", (0, -1, 0), 3.0, **_FRONT),),  # type: ignore[arg-type]
     "lower_face": (Ramp("M0_10", "gn", "y", (0, -1, 0), 5.0, **_FRONT),),  # type: ignore[arg-type]
-    "forehead": (
-        Ramp(
-            "g", "tr", "y", (0, 1, 0), 8.0, anchor="tr", reach=(NEVER, NEVER, 30.0),
-            plateau=(0, 0, 75.0),
-        ),
-    ),
+    "forehead": (Bump("tr", (70, 26, 60), (0, 1, -0.25)),),
     "face_width": (Bump("W9_2", (34, 36, 42), (0.5, 0, 0)),),
     "jaw_width": (Bump("W15_3", (30, 26, 34), (0.5, 0, 0)),),
     "head_width": (Bump("eu", (45, 45, 55), (0.5, 0, 0)),),
     "head_length": (Bump("op", (70, 70, 60), (0, 0, -1)),),
-    "vault": (Bump("v", (70, 55, 90), (0, 1, 0)),),
     "nose_width": (Bump("sn", (20, 10, 15), stretch=(0.040, 0, 0), offset=(0, 9, -6)),),
     "nose_projection": (Bump("prn", (11, 13, 17), (0, 0, 1)),),
     "mouth_width": (Bump("M0_0", (34, 14, 34), stretch=(0.026, 0, 0)),),
@@ -41,9 +35,10 @@ LIDS: Mapping[str, tuple[Term, ...]] = {
     "opening": (Bump("eye", (14, 9, 24), stretch=(0, 0.07, 0)),),
     "slant": (Bump("eye", (18, 15, 26), shear=(("x", "y", 0.05),)),),
     "fold": (
-        Bump("E3_4", (16, 4.5, 8), (0, -1, 0.25)),
-        Bump("E3_6", (9, 4.5, 8), (0, -0.4, 0.1)),
+        Bump("E3_4", (16, 4.5, 8), (0, -1, 0.3)),
+        Bump("E3_6", (9, 4.5, 8), (0, -0.4, 0.2)),
     ),
+    "hood": (Bump("E3_6", (9, 5, 9), (0, -1, 0.25)), Bump("E4_6", (12, 7, 12), (0, -0.5, 0))),
     "crease": (Bump("E2_4", (15, 3.4, 6), (0, 0.2, 1)),),
     "epicanthus": (Bump("E3_1", (4.5, 6, 6), (0.5, -0.7, 0.5), offset=(0.5, -3, -1)),),
     "upper_lid": (Bump("E1_4", (13, 5, 9), (0, -1, 0), offset=(1, 1, 0)),),
@@ -82,7 +77,7 @@ FORMS: Mapping[str, tuple[Term, ...]] = {
     "jaw_angle": (Bump("W15_3", (18, 16, 20), (0.35, -0.75, -0.45), offset=(0, -2, 4)),),
     "jaw_line": (Bump("C8_6", (20, 13, 26), (0.6, -0.35, 0), offset=(-4, -4, 10)),),
     "neck_width": (
-        Bump("C8_10", (70, 34, 70), stretch=(0.018, 0, 0.010), offset=(0, -42, -35)),
+        Bump("C8_10", (80, 40, 80), stretch=(0.018, 0, 0.010), offset=(0, -42, -35)),
     ),
     "larynx": (Bump("C8_10", (9, 12, 16), (0, 0, 1), offset=(0, -24, -2)),),
     "ear_length": (
@@ -113,6 +108,7 @@ SOFT: Mapping[str, tuple[Term, ...]] = {
     "maxilla": (Bump("sn", (24, 16, 28), (0, 0, -1), offset=(0, -3, -8)),),
     "brow_ptosis": (Bump("E4_6", (16, 9, 18), (0, -1, 0)),),
     "neck_bands": (Bump("C8_10", (5, 26, 20), (0, 0, 1), offset=(11, -26, -2)),),
+    "prejowl": (Bump("C5_8", (8, 8, 14), (-0.2, 0.5, -0.8)),),
     "lobule": (Bump("W9_2", (14, 10, 16), (0, -1, 0.1), offset=(4, -24, -40)),),
 }
 

@@ -11,28 +11,28 @@ from ...cache import Arrays
 from ..geometry import vertex_normals
 from ..head import DrawnSurface, Eye, Head, LidContact, Part
 from ..recipe import Recipe
+from .asymmetry import asymmetry_at
 from .shape import Warp, warp_of
 
 _MIRROR = np.array([-1.0, 1.0, 1.0])
 IN_THE_MOUTH = ("teeth", "gum", "tongue", "palate", "mouth")
 """Parts whose names begin so move with the jaws as a whole."""
-WITH_THE_EYE = ("eye", "cornea", "caruncle", "wet", "tear", "lacrimal", "plica")
-"""Parts whose names begin so move with the eyeball as a whole."""
+WITH_THE_EYE = ("eye", "cornea")
+"""Parts that move with the eyeball as a whole."""
 
 
 def person_from(reference: Head, recipe: Recipe) -> Head:
     """Return the head of a person.
 
     All that is a field over the skin (depth, hold, jaw, map, colours, maps) stays as it is on the
-    built-in head; positions are warped and normals made anew.
+    built-in head; positions are warped and normals made anew. The tissue is symmetric; what is
+    drawn is not quite.
 
     Args:
         reference: The built-in head, with the parts that the recipe asks for.
         recipe: The person.
     """
     warp = warp_of(recipe, reference)
-    if warp.is_identity:
-        return reference
     shift = warp.eye_shift
     eyes = tuple(
         Eye(eye.center + shift * (_MIRROR if eye.center[0] < 0 else 1.0), eye.radius)
@@ -41,8 +41,8 @@ def person_from(reference: Head, recipe: Recipe) -> Head:
     return replace(
         reference,
         points=warp(reference.points),
-        drawn=_drawn(reference.drawn, warp, eyes),
-        parts=tuple(_part(part, warp) for part in reference.parts),
+        drawn=_drawn(reference.drawn, warp, recipe, eyes),
+        parts=tuple(_part(part, warp, recipe) for part in reference.parts),
         eyes=eyes,
         teeth=reference.teeth + warp.teeth_shift(),
     )
@@ -93,8 +93,16 @@ def with_moved(reference: Head, arrays: Arrays) -> Head:
     )
 
 
-def _drawn(drawn: DrawnSurface, warp: Warp, eyes: tuple[Eye, ...]) -> DrawnSurface:
-    vertices = warp(drawn.vertices)
+def _seen(points: FloatArray, warp: Warp, recipe: Recipe) -> FloatArray:
+    """Return where points of the built-in head are drawn: warped, and their sides not quite alike.
+
+    The difference is that of the place on the built-in head, so that levels and parts agree.
+    """
+    return np.asarray(warp(points) + asymmetry_at(recipe, points, warp.anchors))
+
+
+def _drawn(drawn: DrawnSurface, warp: Warp, recipe: Recipe, eyes: tuple[Eye, ...]) -> DrawnSurface:
+    vertices = _seen(drawn.vertices, warp, recipe)
     lids = drawn.lids
     bare = replace(lids, clearance=np.zeros(len(lids.vertices)))
     offsets = vertices[lids.vertices] - np.array([eye.center for eye in eyes])[lids.eyes]
@@ -118,13 +126,12 @@ def _normals(drawn: DrawnSurface, vertices: FloatArray) -> FloatArray:
     return np.asarray(vertex_normals(vertices, seams[drawn.triangles])[seams])
 
 
-def _part(part: Part, warp: Warp) -> Part:
-    stem = part.name.partition(".")[0]
-    if part.name.startswith(WITH_THE_EYE) and "lash" not in stem:
+def _part(part: Part, warp: Warp, recipe: Recipe) -> Part:
+    if part.name.partition(".")[0] in WITH_THE_EYE:
         return replace(part, vertices=_with_the_eye(part.vertices, warp))
     if part.name.startswith(IN_THE_MOUTH):
         return replace(part, vertices=part.vertices + warp.teeth_shift())
-    vertices = warp(part.vertices)
+    vertices = _seen(part.vertices, warp, recipe)
     if part.material == "hair":  # lit as the head under it, which a warp hardly turns
         return replace(part, vertices=vertices)
     return replace(part, vertices=vertices, normals=vertex_normals(vertices, part.triangles))

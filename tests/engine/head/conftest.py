@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from engine.head import LEVELS, Head, paper_head, standard_head
+from engine.head import LEVELS, STANDARD, Head, paper_head, person_head
 from engine.head.standard import Sculpture, sculpt
+
+EVEN = replace(STANDARD, asymmetry=0.0)
+"""The standard head as it was before its sides were made to differ, which is how it is tested."""
 
 
 @pytest.fixture(scope="session")
@@ -16,8 +21,8 @@ def sculpture() -> Sculpture:
 
 @pytest.fixture(scope="session")
 def heads() -> dict[str, Head]:
-    """Return the standard head by level of detail, and the paper's as "paper"."""
-    return {level: standard_head(level) for level in LEVELS} | {"paper": paper_head()}
+    """Return the standard head with both sides alike, by level, and the paper's as "paper"."""
+    return {level: person_head(EVEN, level) for level in LEVELS} | {"paper": paper_head()}
 
 
 @pytest.fixture(scope="session")

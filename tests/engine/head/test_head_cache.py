@@ -17,6 +17,7 @@ from engine.head.storage import head_from_arrays, head_to_arrays, source_key
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("RISORIUS_CACHE_DIR", str(tmp_path))
+    standard_module.reference_head.cache_clear()
     return tmp_path
 
 
@@ -53,6 +54,7 @@ def test_hit_builds_nothing(cache: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     def fail() -> None:
         raise AssertionError("the head was built again")
 
+    standard_module.reference_head.cache_clear()
     monkeypatch.setattr(standard_module, "sculpt", fail)
     assert same(first, standard_head("low"))
 
@@ -63,6 +65,7 @@ def test_corrupt_file_is_rebuilt(cache: Path) -> None:
     first = standard_head("low")
     (stored,) = cache.glob("head-*.npz")
     stored.write_bytes(stored.read_bytes()[:1000])
+    standard_module.reference_head.cache_clear()
     assert same(first, standard_head("low"))
     assert stored.stat().st_size > 1000
 
@@ -71,6 +74,7 @@ def test_unwritable_cache_costs_only_time(tmp_path: Path, monkeypatch: pytest.Mo
     occupied = tmp_path / "file"
     occupied.write_text("in the way")
     monkeypatch.setenv("RISORIUS_CACHE_DIR", str(occupied))
+    standard_module.reference_head.cache_clear()
     assert standard_head("low").sheet_count == 656
 
 
