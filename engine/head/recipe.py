@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 
+import numpy as np
+
 from ..errors import InvalidValue, UnknownName
 
 SEXES: Mapping[str, float] = {"female": 0.0, "male": 1.0}
@@ -206,7 +208,10 @@ class Recipe:
         """Return the recipe that plain data gives; what is not named stays as it is in `base`.
 
         Args:
-            values: By attribute; words are understood where an attribute has them.
+            values: By attribute; words are understood where an attribute has them. With "sample",
+                a whole number (or true, for the seed), all attributes that are not named are
+                drawn from people at large by that number, each by itself: to name one leaves
+                the others as they were drawn.
             base: The built-in head if none is given.
 
         Raises:
@@ -215,10 +220,13 @@ class Recipe:
         """
         known = [f.name for f in fields(cls)]
         given: dict[str, object] = {}
+        values, seed = _without_sample(values)
         for name, value in values.items():
             if name not in known:
-                raise UnknownName("recipe attribute", name, known)
+                raise UnknownName("recipe attribute", name, [*known, SAMPLE])
             given[name] = _number(name, value)
+        if seed is not None:
+            given = {**_drawn(seed, given), **given}
         before = base or STANDARD
         recipe = replace(before, **given)  # type: ignore[arg-type]
         # What was usual for the sex and the age before is what is usual now.
@@ -244,6 +252,57 @@ def _number(name: str, value: object) -> object:
     if name in LIMITS and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     return value
+
+
+SAMPLE = "sample"
+"""Word of a recipe that asks for a person drawn by a number."""
+_SPREAD = 0.85
+"""Standard deviations of what is drawn: a face with every part extreme is nobody's."""
+_MOST = 2.0
+
+
+def _without_sample(values: Mapping[str, object]) -> tuple[Mapping[str, object], int | None]:
+    """Return what is given without "sample", and the number to draw by, if that is asked for."""
+    sample = values.get(SAMPLE)
+    rest = {name: value for name, value in values.items() if name != SAMPLE}
+    if sample is None or sample is False:
+        return rest, None
+    number = rest.get("seed", 0) if sample is True else sample
+    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < 2**32:
+        raise InvalidValue(
+            f"recipe {SAMPLE} is {sample!r}; expected a whole number from 0 to 2^32 - 1, or true"
+        )
+    return {"seed": number, **rest}, number
+
+
+def _drawn(seed: int, given: Mapping[str, object]) -> dict[str, object]:
+    """Return every attribute drawn by `seed`; hair and eyes go with the skin, given or drawn."""
+
+    def draw(name: str) -> np.random.Generator:
+        return np.random.default_rng((seed, *name.encode()))
+
+    drawn: dict[str, object] = {}
+    for name, (low, high) in LIMITS.items():
+        if (low, high) == (-3.0, 3.0):
+            value = float(np.clip(draw(name).normal(0.0, _SPREAD), -_MOST, _MOST))
+            drawn[name] = round(value, 2)
+    drawn["sex"] = float(draw("sex").integers(2))
+    drawn["age"] = float(draw("age").integers(18, 81))
+    drawn["skin"] = round(float(draw("skin").uniform()), 2)
+    drawn["undertone"] = round(float(draw("undertone").uniform(-1.0, 1.0)), 2)
+    skin = {**drawn, **given}["skin"]
+    light = 1.0 - float(skin) if isinstance(skin, int | float) else 0.5
+    drawn["freckles"] = round(float(draw("freckles").uniform() ** 2 * light), 2)
+    # Fair hair and light eyes come with light skin, and not always.
+    fair = light + float(draw("fair").normal(0.0, 0.15))
+    eyes = EYE_COLORS[:4] if fair > 0.8 else EYE_COLORS[3:6] if fair > 0.5 else EYE_COLORS[5:]
+    hair = HAIR_COLORS[2:7] if fair > 0.8 else HAIR_COLORS[1:4] if fair > 0.55 else HAIR_COLORS[:2]
+    drawn["eye_color"] = str(draw("eye_color").choice(eyes))
+    drawn["hair_color"] = str(draw("hair_color").choice(hair))
+    women = {**drawn, **given}["sex"] in (0, 0.0)
+    styles = ("short", "bob", "curly", "crop") if women else HAIR_STYLES
+    drawn["hair_style"] = str(draw("hair_style").choice(styles))
+    return drawn
 
 
 STANDARD = Recipe()
