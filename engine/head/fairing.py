@@ -22,9 +22,9 @@ HELD = 50.0
 TRUST_OF_POINT = {
     **dict.fromkeys((f"W{row}_{step}" for row in range(5, 12) for step in (1, 2)), 0.2),
     **dict.fromkeys((f"W{row}_{step}" for row in range(12, 16) for step in range(1, 8)), 1.0),
-    **dict.fromkeys(ear_rim(), 1.0),
-    **dict.fromkeys((f"P{ring}_{spoke}" for ring in (1, 2, 3) for spoke in ATTACHED), 1.0),
-    **dict.fromkeys((f"P4_{spoke}" for spoke in ATTACHED), 1.0),
+    **dict.fromkeys(ear_rim(), 3.0),
+    **dict.fromkeys((f"P{ring}_{spoke}" for ring in (1, 2, 3) for spoke in ATTACHED), 3.0),
+    **dict.fromkeys((f"P4_{spoke}" for spoke in ATTACHED), 3.0),
     **dict.fromkeys((f"E4_{spoke}" for spoke in range(7, 14)), 0.25),
     **dict.fromkeys(("E4_12", "E4_13"), 2.0),
     **dict.fromkeys((f"C{column}_{row}" for column in (4, 5) for row in (8, 9, 10)), 2.0),

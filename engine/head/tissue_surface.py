@@ -15,6 +15,8 @@ from .topology import Topology, boundary_loops
 HIDDEN = ("nostril", "mouth_inner", "upper_lid_inner", "lower_lid_inner")
 BEYOND = ("scalp", "neck")
 EAR = "ear"
+NECK_RINGS = 2
+"""Rings of the neck that carry tissue beyond the first, so that the open jaw finds room."""
 
 SMOOTHED_SHARE = 0.4
 """Part of each jaw weight that is taken from the neighbours, outside the lips."""
@@ -77,14 +79,16 @@ class TissueSurface:
 
 
 def face_sheet(cage: Cage) -> BoolArray:
-    """Return which cage faces carry tissue: the face and one ring of scalp and neck, shape (f,)."""
+    """Return which faces carry tissue, shape (f,): the face, a ring of scalp, three of neck."""
     regions = np.array(cage.regions)
     of_face = ~np.isin(regions, (*HIDDEN, *BEYOND, EAR))
     face_points = np.zeros(len(cage.points), dtype=bool)
     face_points[corners_of(cage.faces[of_face])] = True
-    touching = np.isin(regions, BEYOND) & _any_corner(cage.faces, face_points)
-    grown = face_points.copy()
-    grown[corners_of(cage.faces[touching])] = True
+    grown = face_points
+    for beyond in (BEYOND, *[("neck",)] * NECK_RINGS):
+        touching = np.isin(regions, beyond) & _any_corner(cage.faces, grown)
+        grown = grown.copy()
+        grown[corners_of(cage.faces[touching])] = True
     enclosed = ~_any_corner(cage.faces, ~grown)
     return np.asarray(enclosed & ~np.isin(regions, (*HIDDEN, EAR)))
 

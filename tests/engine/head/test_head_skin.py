@@ -18,10 +18,10 @@ ALL = ("low", "medium", "high", "paper")
 # The narrow ones sit in the nostril's front, the corners of lips and lids, and where the ear's
 # front edge leaves the head.
 FIGURES = {
-    "low": (3_516, 0.8, 0.05, 0.2, 7.0),
-    "medium": (9_892, 0.2, 0.02, 0.2, 7.0),
-    "high": (39_344, 0.05, 0.005, 0.2, 7.0),
-    "paper": (1_528, 0.8, 1.0, 4.0, 7.0),
+    "low": (3_516, 0.8, 0.05, 0.4, 8.0),
+    "medium": (9_892, 0.2, 0.02, 0.4, 8.0),
+    "high": (39_344, 0.1, 0.005, 0.4, 8.0),
+    "paper": (1_568, 0.8, 1.0, 4.0, 7.0),
 }
 
 
