@@ -13,12 +13,14 @@ import {
   Euler,
   Float32BufferAttribute,
   MathUtils,
+  Matrix4,
   Mesh,
   Quaternion,
   Vector3,
 } from 'three';
 import type { GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { EyeSetting } from './eye-shader';
 import { createMaterial } from './materials';
 import { MovingNormals } from './normals';
 import { skinForm } from './skin-form';
@@ -96,6 +98,7 @@ const NECK_BELOW = -0.14;
 const NECK_FADE = 58;
 /** What is blended comes after what is opaque: skin, which fades at the neck, then corneas, then hair over both. */
 const DRAWN_AFTER: Record<string, number> = { skin: 1, cornea: 2, hair: 3 };
+const EYE_NODES = ['eye.L', 'eye.R'] as const;
 const RADIANS = Math.PI / 180;
 
 export class Face {
@@ -115,6 +118,8 @@ export class Face {
   private readonly mapAddresses: Partial<Record<MapName, string>>;
   private readonly wrinkles: Wrinkles | null;
   private readonly wrinkle: BufferAttribute;
+  private readonly eyes: Readonly<Record<string, EyeSetting>>;
+  private readonly eyeCenters: Readonly<Record<string, Triple>>;
 
   /**
    * Load the tissue surface of a rig.
@@ -212,7 +217,13 @@ export class Face {
       });
     }
     this.normals.update(surface.positions, surface.dirty);
-    dress(this.root, this.maps);
+    const centers = (extras.eyes ?? []).map(({ center }) => center);
+    this.eyeCenters = Object.fromEntries(centers.map((center, i) => [EYE_NODES[i]!, center]));
+    this.eyes = {
+      'eye.L': new EyeSetting(1, this.maps.uniforms.eye),
+      'eye.R': new EyeSetting(-1, this.maps.uniforms.eye),
+    };
+    dress(this.root, this.maps, this.eyes);
     const form = skinForm(
       {
         positions: surface.rest,
@@ -232,6 +243,7 @@ export class Face {
     );
     this.skinPosition = dynamic(skin.geometry, 'position', surface.positions);
     this.skinNormal = dynamic(skin.geometry, 'normal', this.normals.normals);
+    this.updateEyes();
   }
 
   /**
@@ -252,7 +264,9 @@ export class Face {
       this.turn('jaw', new Quaternion(...pose.jawQuaternion)),
       this.slideJaw(pose.jawOffset),
     ];
-    return moved || turned.includes(true);
+    const changed = moved || turned.includes(true);
+    if (changed) this.updateEyes();
+    return changed;
   }
 
   /** A streamed point, by name or index, where it is drawn [mm, head frame]. */
@@ -343,6 +357,31 @@ export class Face {
     out[2] = this.tissueRest[point * 3 + 2]! + z;
   };
 
+  /** Tell the eyes how they are turned, and where the lids' edges are. */
+  private updateEyes(): void {
+    for (const name of EYE_NODES) {
+      const setting = this.eyes[name]!;
+      const node = this.nodes.get(name);
+      if (node !== undefined) {
+        const turned = new Matrix4().makeRotationFromQuaternion(node.quaternion);
+        setting.turn.value.setFromMatrix4(turned);
+      }
+      const center = this.eyeCenters[name];
+      const side = name.slice(-1);
+      const places = ['en', 'ex', 'ps', 'pi'].flatMap(
+        (stem) => this.landmarks[`${stem}.${side}`] ?? [],
+      );
+      if (places.length < 4) continue;
+      if (center === undefined) continue;
+      const [inner, outer, upper, lower] = places.map((index) => {
+        const place = this.drawnVertex(index);
+        return place.map((at, axis) => at - center[axis]! * MILLIMETRES) as Triple;
+      });
+      setting.corners.value.set(inner![0], inner![1], outer![0], outer![1]);
+      setting.lids.value.setX(upper![1]).setY(lower![1]);
+    }
+  }
+
   private turn(name: string, rotated: Quaternion): boolean {
     const node = this.nodes.get(name);
     if (node === undefined || node.quaternion.equals(rotated)) return false;
@@ -393,7 +432,7 @@ function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
 }
 
 /** Give every mesh its material, its shadow and its place in the drawing order. */
-function dress(root: Object3D, maps: FaceMaps): void {
+function dress(root: Object3D, maps: FaceMaps, eyes: Readonly<Record<string, EyeSetting>>): void {
   root.updateMatrixWorld(true);
   const neckFade = neckFadeOf(root);
   for (const mesh of meshes(root)) {
@@ -408,9 +447,10 @@ function dress(root: Object3D, maps: FaceMaps): void {
       inMouth,
       neckFade,
       maps: mesh.geometry.hasAttribute('uv') ? maps : null,
+      eye: eyeOf(mesh, eyes),
     });
-    mesh.castShadow = kind !== 'cornea';
-    mesh.receiveShadow = kind !== 'cornea';
+    mesh.castShadow = kind !== 'cornea' && kind !== 'eye';
+    mesh.receiveShadow = true;
     mesh.frustumCulled = false;
     mesh.renderOrder = DRAWN_AFTER[kind] ?? 0;
     if (kind === 'hair') addStrandAttributes(mesh);
@@ -419,6 +459,12 @@ function dress(root: Object3D, maps: FaceMaps): void {
       mesh.geometry.setAttribute('restPosition', positions.clone());
     }
   }
+}
+
+/** The eye that a ball or cornea turns with. */
+function eyeOf(mesh: Mesh, eyes: Readonly<Record<string, EyeSetting>>): EyeSetting | null {
+  const turning = mesh.parent === null ? '' : nodeName(mesh.parent);
+  return eyes[turning] ?? null;
 }
 
 function addStrandAttributes({ geometry }: Mesh<BufferGeometry>): void {

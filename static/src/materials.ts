@@ -2,6 +2,8 @@
 
 import type { Material, MeshPhysicalMaterialParameters, Texture } from 'three';
 import { AdditiveBlending, DoubleSide, MeshPhysicalMaterial, Vector2 } from 'three';
+import type { EyeSetting } from './eye-shader';
+import { makeCornea, makeEyeball } from './eye-shader';
 import { makeHair } from './hair-shader';
 import { createPores } from './pores';
 import { makeSkin } from './skin-shader';
@@ -19,6 +21,8 @@ export interface Setting {
   neckFade: readonly [number, number] | null;
   /** The face's maps; null for a surface without texture coordinates. */
   maps: FaceMaps | null;
+  /** Of an eyeball or cornea, the eye it belongs to. */
+  eye: EyeSetting | null;
 }
 
 /** A fade that never begins. */
@@ -26,34 +30,30 @@ const NO_FADE = [-2000, -1999] as const;
 
 export function createMaterial(
   kind: string,
-  { vertexColors, inMouth, map, neckFade, maps }: Setting,
+  { vertexColors, inMouth, map, neckFade, maps, eye }: Setting,
 ): Material {
   const envMapIntensity = inMouth ? 0.25 : 1;
   switch (kind) {
     case 'eye':
-      return withSoftShadows({
-        vertexColors,
-        roughness: 0.22,
-        specularIntensity: 0.5,
-        clearcoat: 0.5,
-        clearcoatRoughness: 0.06,
-      });
+      return eyeball(vertexColors, eye);
     case 'cornea':
-      return cornea();
+      return eye === null ? clearCornea() : cornea(eye);
     case 'wet':
       return withSoftShadows({
         vertexColors,
-        roughness: inMouth ? 0.45 : 0.32,
-        specularIntensity: inMouth ? 0.25 : 0.6,
-        clearcoat: inMouth ? 0 : 0.3,
-        clearcoatRoughness: 0.25,
+        roughness: inMouth ? 0.42 : 0.3,
+        specularIntensity: inMouth ? 0.35 : 0.6,
+        clearcoat: inMouth ? 0.25 : 0.5,
+        clearcoatRoughness: inMouth ? 0.22 : 0.16,
         envMapIntensity,
       });
     case 'teeth':
       return withSoftShadows({
         vertexColors,
-        roughness: 0.34,
-        specularIntensity: inMouth ? 0.35 : 0.45,
+        roughness: 0.3,
+        // Enamel is denser than skin, and wet.
+        ior: 1.62,
+        specularIntensity: inMouth ? 0.45 : 0.55,
         envMapIntensity,
       });
     case 'hair':
@@ -143,8 +143,42 @@ function cards(vertexColors: boolean, map: Texture): Material {
   return material;
 }
 
+function eyeball(vertexColors: boolean, eye: EyeSetting | null): Material {
+  const material = new MeshPhysicalMaterial({
+    vertexColors,
+    roughness: 0.4,
+    specularIntensity: 0.35,
+    clearcoat: 0.75,
+    clearcoatRoughness: 0.07,
+  });
+  material.onBeforeCompile = (program) => {
+    if (eye === null) softenShadows(program);
+    else makeEyeball(program, eye);
+  };
+  material.customProgramCacheKey = () => (eye === null ? 'plain eye' : 'eye');
+  return material;
+}
+
+/** Iris and highlights in one, over the ball's own iris. */
+function cornea(eye: EyeSetting): Material {
+  const material = new MeshPhysicalMaterial({
+    roughness: 0.6,
+    specularIntensity: 0,
+    transparent: true,
+    premultipliedAlpha: true,
+    depthWrite: false,
+    clearcoat: 1,
+    clearcoatRoughness: 0.025,
+    envMapIntensity: 1.2,
+  });
+  material.onBeforeCompile = (program) => {
+    makeCornea(program, eye);
+  };
+  return material;
+}
+
 /** Only its highlights are seen, added to the iris behind it. */
-function cornea(): Material {
+function clearCornea(): Material {
   return new MeshPhysicalMaterial({
     color: 0x000000,
     roughness: 0.03,

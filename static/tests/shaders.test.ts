@@ -4,6 +4,7 @@ import type { WebGLRenderer } from 'three';
 import { AgXToneMapping, ShaderChunk, ShaderLib } from 'three';
 import { describe, expect, it } from 'vitest';
 import type { Program } from '../src/shader-edit';
+import { EyeSetting, makeCornea, makeEyeball } from '../src/eye-shader';
 import { makeSkin } from '../src/skin-shader';
 import { exposeSkin } from '../src/tone';
 
@@ -29,6 +30,25 @@ describe('the skin s program', () => {
     expect(program.fragmentShader).toContain('scatteredShadow( ( directLight.visible');
     expect(program.fragmentShader).toContain('skinSmooth, 0.65 * skinBare');
     expect(program.uniforms).toHaveProperty('poreMap');
+  });
+});
+
+describe('the eye s programs', () => {
+  const setting = new EyeSetting(-1, { value: null });
+
+  it('puts an iris behind the cornea, and keeps the highlight before it', () => {
+    const program = physical();
+    makeCornea(program, setting);
+    expect(program.fragmentShader).toContain('refract(');
+    expect(program.fragmentShader).not.toContain('<opaque_fragment>');
+    expect(program.uniforms).toHaveProperty('eyeMap');
+  });
+
+  it('shades the ball under the lids', () => {
+    const program = physical();
+    makeEyeball(program, setting);
+    expect(program.fragmentShader).toContain('lidShade(vInEye)');
+    expect(setting.lids.value.z).toBe(-1);
   });
 });
 

@@ -100,7 +100,7 @@ def _outer_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
     depth = depth - 0.16 * height**2 + 0.35 * np.sin(np.pi * along.clip(0, 1))
     to_bed = smoothstep(-0.15, 1.0, along + 0.07 * np.abs(height))[..., None]
     colors = SCLERA_CORNER + (OUTER_BED - SCLERA_CORNER) * to_bed
-    return _sheet(x, y, depth), colors.reshape(-1, 3)
+    return _sheet(x, y, depth), 0.72 * colors.reshape(-1, 3)
 
 
 def _sheet(x: FloatArray, y: FloatArray, z: FloatArray) -> Mesh:

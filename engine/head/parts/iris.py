@@ -54,11 +54,11 @@ class IrisColors:
 
 
 IRISES: Mapping[str, IrisColors] = {
-    "blue": IrisColors((104, 124, 144), (140, 138, 120), (34, 46, 64), 0.20, 1.0, 4),
-    "gray": IrisColors((116, 124, 130), (138, 132, 116), (42, 48, 54), 0.18, 0.95, 3),
+    "blue": IrisColors((98, 113, 128), (132, 128, 110), (32, 42, 56), 0.20, 1.0, 4),
+    "gray": IrisColors((112, 117, 120), (132, 126, 110), (42, 48, 54), 0.18, 0.95, 3),
     "green": IrisColors((100, 108, 82), (132, 110, 70), (38, 44, 38), 0.30, 0.95, 7),
     "hazel": IrisColors((96, 92, 66), (122, 84, 47), (38, 35, 28), 0.40, 0.9, 9),
-    "amber": IrisColors((132, 92, 50), (144, 95, 47), (58, 37, 21), 0.45, 0.8, 5),
+    "amber": IrisColors((122, 87, 50), (132, 89, 47), (58, 37, 21), 0.45, 0.8, 5),
     "brown": IrisColors((86, 57, 37), (97, 61, 36), (38, 24, 17), 0.50, 0.7, 3),
     "dark_brown": IrisColors((62, 39, 27), (66, 40, 26), (28, 18, 14), 0.50, 0.5, 0),
 }
@@ -68,10 +68,10 @@ FLECK = (96.0, 58.0, 28.0)
 
 # Linear RGB.
 PUPIL = np.array([0.0035, 0.003, 0.003])
-SCLERA = np.array([0.60, 0.555, 0.50])
-SCLERA_AGED = np.array([0.57, 0.49, 0.385])
-SCLERA_CORNER = np.array([0.47, 0.30, 0.245])
-SCLERA_NEAR_LIMBUS = np.array([0.50, 0.485, 0.465])
+SCLERA = np.array([0.54, 0.49, 0.435])
+SCLERA_AGED = np.array([0.52, 0.44, 0.345])
+SCLERA_CORNER = np.array([0.43, 0.27, 0.215])
+SCLERA_NEAR_LIMBUS = np.array([0.455, 0.435, 0.41])
 VESSEL = np.array([0.42, 0.115, 0.09])
 VESSELS = 46
 
