@@ -32,7 +32,7 @@ class Scalp:
     def __init__(self, skin: DrawnSurface, recipe: Recipe) -> None:
         """Prepare `skin` for the hair of `recipe`."""
         self.recipe = recipe
-        self._vertices = np.asarray(getattr(skin, "reference", skin.vertices))
+        self._vertices = skin.vertices if skin.reference is None else skin.reference
         self._normals = skin.normals
         names = np.array(skin.region_names)[skin.regions]
         bearing = np.isin(names, COVERED)
