@@ -1,4 +1,4 @@
-"""The command line: serve, clip, sheet, bench, measure, warm.
+"""The command line: serve, clip, sheet, levels, bench, measure, warm.
 
 Every command ends with 0, or with 2 and one clear sentence.
 """
@@ -187,6 +187,18 @@ def sheet(
 
 def _words(listed: str) -> tuple[str, ...]:
     return tuple(word.strip() for word in listed.split(",") if word.strip())
+
+
+@app.command()
+def levels(
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Measure the head's levels of detail: triangles, bytes, and the time to make them."""
+    from .levels import markdown, measure_levels
+
+    with _console.status("measuring") as status:
+        figures = measure_levels(lambda stage: status.update(f"measuring: {stage}"))
+    typer.echo(json.dumps(figures, indent=1) if as_json else markdown(figures))
 
 
 @app.command()

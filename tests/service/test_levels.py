@@ -1,0 +1,23 @@
+"""The table of levels: it names what was measured."""
+
+from __future__ import annotations
+
+from service.levels import markdown
+
+
+def test_levels_and_textures_are_rows() -> None:
+    level = {
+        "level": "low",
+        "skin_vertices": 1200,
+        "skin_triangles": 2400,
+        "part_vertices": 10,
+        "part_triangles": 100,
+        "surface_glb_bytes": 2_500_000,
+        "first_s": 1.0,
+        "person_s": 0.5,
+        "cached_s": 0.1,
+    }
+    textures = {"bytes": {"albedo.jpg": 900_000, "orm.jpg": 100_000}, "baked_s": 9.0}
+    table = markdown({"levels": [level], "textures": textures})
+    assert "| low | 1,200 | 2,400 | 2,500 | 2.5 | 1.0 | 0.50 | 0.10 |" in table
+    assert "| all, baked in 9.0 s | 1000 |" in table
