@@ -9,7 +9,6 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from .cage import mirrored_faces
 from .subdivision import Level
-from .tissue_surface import triangulated
 from .topology import Topology
 
 COARSE_REGIONS = ("scalp", "neck", "mouth_inner", "submental")
@@ -60,7 +59,18 @@ def graded_triangles(
 
 
 def _split(faces: IntArray, parents: IntArray, positions: FloatArray) -> tuple[IntArray, IntArray]:
-    return triangulated(faces, positions), np.repeat(parents, (faces >= 0).sum(axis=1) - 2)
+    """Return triangles, each quad split along the diagonal that leaves the largest least angle."""
+    is_quad = faces[:, 3] >= 0
+    a, b, c, d = faces.T
+    along_first = np.stack([np.c_[a, b, c], np.c_[a, c, d]], axis=1)
+    along_second = np.stack([np.c_[a, b, d], np.c_[b, c, d]], axis=1)
+    first, second = (
+        smallest_angles(positions[pair]).min(axis=1) for pair in (along_first, along_second)
+    )
+    better = is_quad & (second > first * (1 + 1e-6))
+    pairs = np.where(better[:, None, None], along_second, along_first).reshape(-1, 3)
+    kept = np.column_stack([np.ones_like(is_quad), is_quad]).ravel()
+    return pairs[kept], np.repeat(parents, 1 + is_quad)
 
 
 def _outline(topology: Topology, face: int, edge_is_fine: BoolArray) -> list[int]:

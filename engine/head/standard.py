@@ -31,7 +31,9 @@ from .uv import Unwrap, unwrap
 
 # Semi-sharp creases along rows of the cage; chosen by eye.
 CREASES = (
-    ([f"E2_{spoke}" for spoke in range(1, 8)], 0.85),  # crease of the upper lid
+    ([f"E2_{spoke}" for spoke in range(2, 7)], 0.85),  # crease of the upper lid
+    (["E2_1", "E2_2"], 0.4),  # its ends run out softly
+    (["E2_6", "E2_7"], 0.4),
     ([f"E1_{spoke % 16}" for spoke in range(17)], 0.6),  # front edge of the lids
     ([f"M2_{spoke}" for spoke in range(11)], 0.35),  # border of the lips
     (["b5_3", "b6_3", "M4_3", "M4_2"], 0.5),  # crease round the wing of the nose
