@@ -117,8 +117,6 @@ def part_attributes(part: Part, *, origin: FloatArray | float = 0.0) -> dict[str
         attributes["TEXCOORD_0"] = part.uvs.astype(np.float32)
     if part.hair is not None:
         attributes["_HAIR"] = part.hair.astype(np.float32)
-    if part.uvs is not None:
-        attributes["TEXCOORD_0"] = part.uvs.astype(np.float32)
     return attributes
 
 

@@ -9,13 +9,14 @@ import numpy.typing as npt
 from PIL import Image
 
 from ..head import Head
+from ..parts import eye_texture
 from ..recipe import Recipe
 from .albedo import albedo
 from .pigment import srgb
 from .texels import Texels
 from .zones import Surface, zones_of
 
-TEXTURE_NAMES = ("albedo.jpg",)
+TEXTURE_NAMES = ("albedo.jpg", "eye.jpg")
 """Files of a head's textures, as they are served."""
 ALBEDO_SIZE, MAP_SIZE = 2048, 1024
 ALBEDO_QUALITY, MAP_QUALITY = 85, 90
@@ -34,7 +35,10 @@ def head_textures(head: Head, recipe: Recipe) -> dict[str, bytes]:
     zones = zones_of(Surface.of(drawn))
     fine = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, ALBEDO_SIZE)
     colors = srgb_bytes(albedo(fine, zones, drawn.reference, recipe))
-    return {"albedo.jpg": jpeg(fine.image(colors), ALBEDO_QUALITY)}
+    return {
+        "albedo.jpg": jpeg(fine.image(colors), ALBEDO_QUALITY),
+        "eye.jpg": jpeg(eye_texture(recipe), MAP_QUALITY),
+    }
 
 
 def srgb_bytes(linear: npt.NDArray[np.float32]) -> npt.NDArray[np.uint8]:
