@@ -20,6 +20,7 @@ from .facs import LETTERS, ActionUnit, Term, format_facs, parse_facs
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
+from .head.textures import head_textures
 from .jaw import JawHinge
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import measure_units
@@ -67,6 +68,7 @@ __all__ = [
     "clip_to_glb",
     "face_to_glb",
     "format_facs",
+    "head_textures",
     "hold_units",
     "judge",
     "landmarks_68",

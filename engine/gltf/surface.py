@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..head.head import BULGE_HEIGHT, BULGE_POWER, BULGE_RADIUS, LID_GAP, Head
+from ..head.wrinkles import wrinkles_of
 from ..rig import Rig
 from ..textures import texture_names
 from .builder import GlbBuilder, compact_indices, metres
@@ -82,6 +83,7 @@ def _add_skin(builder: GlbBuilder, head: Head, parent: Pivot) -> None:
             "regions": builder.accessor(head.drawn.regions.astype(np.uint16)),
             "region_names": list(head.drawn.region_names),
             **_seams(builder, head),
+            **_wrinkles(builder, head),
         },
     )
 
@@ -91,6 +93,28 @@ def _seams(builder: GlbBuilder, head: Head) -> dict[str, int]:
     if head.drawn.seams is None:
         return {}
     return {"seams": builder.accessor(compact_indices(head.drawn.seams))}
+
+
+def _wrinkles(builder: GlbBuilder, head: Head) -> dict[str, dict[str, int]]:
+    """Store the gauges and, row by row like the map, how they spread over the drawn skin.
+
+    A gauge's strength is clamp(gain (1 - length / rest)) between its streamed points; a drawn
+    vertex is wrinkled by clamp(sum of weights[k] * strength[indices[k]]).
+    """
+    wrinkles = wrinkles_of(head)
+    if wrinkles is None:
+        return {}
+    rows = wrinkles.spread
+    numbers = {
+        "first": compact_indices(wrinkles.first),
+        "second": compact_indices(wrinkles.second),
+        "rest": metres(wrinkles.rest),
+        "gain": wrinkles.gain.astype(np.float32),
+        "indptr": rows.indptr.astype(np.uint32),
+        "indices": compact_indices(rows.indices),
+        "weights": rows.data.astype(np.float32),
+    }
+    return {"wrinkles": {name: builder.accessor(values) for name, values in numbers.items()}}
 
 
 def _map_buffers(builder: GlbBuilder, head: Head) -> dict[str, int]:

@@ -12,14 +12,17 @@ from ..head import Head
 from ..parts import eye_texture
 from ..recipe import Recipe
 from .albedo import albedo
+from .occlusion import occlusion
 from .pigment import srgb
+from .relief import normals, relief
+from .roughness import roughness
 from .texels import Texels
 from .zones import Surface, zones_of
 
-TEXTURE_NAMES = ("albedo.jpg", "eye.jpg")
+TEXTURE_NAMES = ("albedo.jpg", "normal.jpg", "orm.jpg", "wrinkles.jpg", "eye.jpg")
 """Files of a head's textures, as they are served."""
 ALBEDO_SIZE, MAP_SIZE = 2048, 1024
-ALBEDO_QUALITY, MAP_QUALITY = 85, 90
+ALBEDO_QUALITY, NORMAL_QUALITY, MAP_QUALITY = 87, 92, 88
 
 
 def head_textures(head: Head, recipe: Recipe) -> dict[str, bytes]:
@@ -35,8 +38,15 @@ def head_textures(head: Head, recipe: Recipe) -> dict[str, bytes]:
     zones = zones_of(Surface.of(drawn))
     fine = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, ALBEDO_SIZE)
     colors = srgb_bytes(albedo(fine, zones, drawn.reference, recipe))
+    texels = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, MAP_SIZE)
+    rest, wrinkled = relief(texels, zones, drawn.reference, recipe)
+    rough = roughness(texels, zones, drawn.reference, rest, recipe)
+    packed = np.column_stack([texels.carried(occlusion(head)), rough, np.zeros(len(rough))])
     return {
         "albedo.jpg": jpeg(fine.image(colors), ALBEDO_QUALITY),
+        "normal.jpg": jpeg(normals(texels, rest), NORMAL_QUALITY),
+        "orm.jpg": jpeg(texels.image((packed * 255 + 0.5).astype(np.uint8)), MAP_QUALITY),
+        "wrinkles.jpg": jpeg(normals(texels, wrinkled), NORMAL_QUALITY),
         "eye.jpg": jpeg(eye_texture(recipe), MAP_QUALITY),
     }
 

@@ -1,0 +1,231 @@
+"""The relief of the skin in millimetres: pores, fine lines, wrinkles; and normals made from it.
+
+Depths are of the order that profilometry of skin gives: pores and the net of fine lines some
+hundredths of a millimetre, lip furrows a tenth, wrinkles up to one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from ...arrays import Float32Array, FloatArray
+from ..noise import cell_edges, spot_noise, value_noise
+from ..recipe import Recipe
+from .texels import Texels
+from .zones import Zones
+
+OLD = (28.0, 75.0)
+"""Ages between which lines stay when the face is at rest."""
+STAYING = 0.6
+"""Share of a wrinkle's depth that stays on the oldest face."""
+
+_ZONES = ("lip", "beard", "pores", "front", "mouth", "violet", "scalp", "nostril")
+
+
+def relief(
+    texels: Texels, zones: Zones, places: FloatArray, recipe: Recipe
+) -> tuple[Float32Array, Float32Array]:
+    """Return the skin's height [mm] at rest and with every wrinkle formed, shape (n,) each.
+
+    Args:
+        texels: Where they lie.
+        zones: Fields over the skin.
+        places: Positions of the vertices on the built-in head [mm], shape (d, 3).
+        recipe: The person.
+    """
+    names = [field.name for field in fields(Zones)]
+    columns = [names.index(name) for name in _ZONES]
+    table = texels.carried(zones.table()[:, columns])
+    at = texels.carried(places)
+    seed = recipe.seed % 2**20
+    fine = _fine_relief(at, table, recipe.sex, seed)
+    folds = _folds(at, table, seed)
+    age = float(np.clip((recipe.age - OLD[0]) / (OLD[1] - OLD[0]), 0, 1))
+    rest = fine + STAYING * age**1.2 * folds
+    return rest, np.asarray(fine + np.float32(0.85 + 0.3 * age) * folds)
+
+
+def normals(texels: Texels, heights: Float32Array) -> npt.NDArray[np.uint8]:
+    """Return tangent-space normals of a relief as a map of 8 bits, green up, shape (s, s, 3)."""
+    height = texels.image(heights).astype(np.float32)
+    width = texels.image(texels.width).astype(np.float32)
+    across = (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1)) / (2 * width)
+    down = (np.roll(height, -1, axis=0) - np.roll(height, 1, axis=0)) / (2 * width)
+    steep = np.sqrt(1 + across**2 + down**2)
+    normal = np.stack([-across / steep, down / steep, 1 / steep], axis=2)
+    return np.asarray((normal * 127.5 + 128).clip(0, 255), dtype=np.uint8)
+
+
+@njit(cache=True, nogil=True)
+def _fine_relief(
+    places: Float32Array, table: Float32Array, sex: float, seed: int
+) -> npt.NDArray[np.float32]:
+    found = np.empty(len(places), dtype=np.float32)
+    for n in range(len(places)):
+        x, y, z = float(places[n, 0]), float(places[n, 1]), float(places[n, 2])
+        lip_depth, beard, pored, front = table[n, 0], table[n, 1], table[n, 2], table[n, 3]
+        wet, thin = table[n, 4], table[n, 5]
+        lip = min(max((lip_depth + 0.6) / 1.6, 0.0), 1.0)
+        skin = (1 - lip) * (1 - wet)
+        n8 = value_noise(x / 8, y / 8, z / 8, seed + 51)
+        n3 = value_noise(x / 2.6, y / 2.6, z / 2.6, seed + 52)
+        n1 = value_noise(x / 1.0, y / 1.0, z / 1.0, seed + 53)
+        height = skin * (0.075 * n8 + 0.045 * n3 + 0.024 * n1) * (1 + 0.5 * pored)
+        # The net of fine lines, coarser where skin is thick, drawn along under the eyes.
+        scale = 1.15 if thin < 0.2 else 0.8
+        bend = 0.35 * n3
+        net = cell_edges((x + bend) / scale, (y + bend) / scale, z / scale, seed + 54)
+        height -= skin * (0.034 + 0.014 * front) * np.exp(-((net / 0.16) ** 2))
+        if pored > 0.05:
+            pore = spot_noise(x / 1.02, y / 1.02, z / 1.02, 0.6, 0.16, 0.34, seed + 26)
+            height -= skin * 0.115 * pored * min(pore * 1.5, 1.0)
+        if beard > 0.05:
+            root = spot_noise(x / 0.95, y / 0.95, z / 0.95, 0.8, 0.15, 0.3, seed + 41)
+            height += skin * 0.04 * beard * sex * root
+        if lip > 0:
+            bend = 0.5 * n3
+            line = value_noise((x + bend) / 0.85, y / 5.5, z / 5.5, seed + 31)
+            fine = value_noise((x + bend) / 1.5, y / 7.0, z / 7.0, seed + 55)
+            furrow = np.exp(-((line / 0.28) ** 2)) * 0.09 + np.exp(-((fine / 0.22) ** 2)) * 0.11
+            height -= lip * furrow * (1 - wet) * min(1.0, 0.35 + lip_depth / 4)
+        found[n] = height
+    return found
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _groove(noise: float, spacing: float, width: float) -> float:
+    """Return the profile of a line where noise crosses zero: 1 at its bottom, raised beside it."""
+    gap = noise * spacing / width
+    return float(np.exp(-gap * gap) - 0.32 * np.exp(-((abs(gap) - 2.0) ** 2)))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _spot(x: float, y: float, cx: float, cy: float, width: float, height: float) -> float:
+    u, v = (x - cx) / width, (y - cy) / height
+    return float(np.exp(-((u * u + v * v) ** 2)))
+
+
+@njit(cache=True, nogil=True)
+def _along(x: float, y: float, curve: FloatArray) -> tuple[float, float]:
+    """Return the signed distance from a curve (k, 2), and the share of the way along it."""
+    best, sign, share = 1e9, 1.0, 0.0
+    for k in range(len(curve) - 1):
+        ax, ay = curve[k]
+        bx, by = curve[k + 1, 0] - ax, curve[k + 1, 1] - ay
+        s = min(max(((x - ax) * bx + (y - ay) * by) / (bx * bx + by * by), 0.0), 1.0)
+        dx, dy = x - ax - s * bx, y - ay - s * by
+        square = dx * dx + dy * dy
+        if square < best:
+            best, share = square, (k + s) / (len(curve) - 1)
+            sign = 1.0 if bx * dy - by * dx > 0 else -1.0
+    return sign * np.sqrt(best), share
+
+
+_NASOLABIAL = np.array([
+    [18.5, -37.0], [22.0, -44.0], [26.5, -52.0], [31.0, -60.0], [34.5, -69.0], [35.5, -78.0],
+])  # fmt: skip
+_MARIONETTE = np.array([[30.0, -74.0], [32.0, -82.0], [33.0, -91.0], [32.0, -99.0]])
+_MENTOLABIAL = np.array([[0.0, -91.0], [8.0, -90.5], [16.0, -89.0], [22.0, -86.5]])
+_TEAR = np.array([[13.0, -8.0], [18.0, -14.0], [25.0, -18.5], [34.0, -20.0], [43.0, -18.0]])
+
+
+@njit(cache=True, nogil=True)
+def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[np.float32]:
+    """Return the depth (negative) of fully formed wrinkles [mm], shape (n,)."""
+    found = np.empty(len(places), dtype=np.float32)
+    for n in range(len(places)):
+        side, y, z = float(places[n, 0]), float(places[n, 1]), float(places[n, 2])
+        x = abs(side)
+        hidden = max(table[n, 4], table[n, 7])
+        lip_depth, scalp = table[n, 0], table[n, 6]
+        if z < -30 or hidden > 0.5:
+            found[n] = 0.0
+            continue
+        w6 = value_noise(side / 7, y / 7, z / 7, seed + 61)
+        w2 = value_noise(side / 2.3, y / 2.3, z / 2.3, seed + 62)
+        depth = 0.0
+        # Forehead: long lines across that rise over the brows, meet and part.
+        mask = _spot(x, y, 0.0, 46.0, 56.0, 26.0)
+        if mask > 0.01:
+            rise = y - 3.0 * np.sin((x - 8.0) / 17.0) + 1.1 * w6
+            long = value_noise(side / 46, rise / 7.8 + 0.35, z / 90, seed + 63)
+            minor = value_noise(side / 24, rise / 4.2, z / 90, seed + 64)
+            depth += mask * (0.62 * _groove(long, 7.8, 0.95) + 0.22 * _groove(minor, 4.2, 0.55))
+        # Glabella: upright lines between the brows, the outer pair the deepest.
+        mask = _spot(x, y, 0.0, 17.0, 15.0, 15.0)
+        if mask > 0.01:
+            lean = x - 0.10 * (y - 12.0) + 0.6 * w6
+            pair = np.exp(-(((lean - 7.2) / 0.85) ** 2)) - 0.3 * np.exp(
+                -(((lean - 9.3) / 1.3) ** 2)
+            )
+            more = value_noise((side + 0.8 * w6) / 4.2, y / 26, z / 60, seed + 65)
+            depth += mask * (0.75 * pair + 0.26 * _groove(more, 4.2, 0.6))
+        # Root of the nose: lines across, and on its sides slanting ones (AU 9).
+        mask = _spot(x, y, 0.0, 3.5, 11.0, 8.5)
+        if mask > 0.01:
+            cross = value_noise(
+                side / 16, (y - 0.10 * x * x / 4 + 0.5 * w6) / 3.6, z / 60, seed + 66
+            )
+            depth += mask * 0.5 * _groove(cross, 3.6, 0.6)
+        mask = _spot(x, y, 10.0, -12.0, 6.0, 11.0)
+        if mask > 0.01:
+            slant = value_noise((x + y) / 14, (y - 0.9 * x + 0.4 * w6) / 3.0, z / 60, seed + 67)
+            depth += mask * 0.28 * _groove(slant, 3.0, 0.5)
+        # Crow's feet: rays from the corner of the eye.
+        ray_x, ray_y = x - 43.0, y - 0.5
+        reach = np.sqrt(ray_x * ray_x + ray_y * ray_y + (z - 73.0) ** 2 * 0.35)
+        if x > 44 and reach < 32:
+            angle = np.arctan2(ray_y, ray_x + 0.25 * abs(z - 73.0))
+            fan = min(max((reach - 4.5) / 5.0, 0.0), 1.0) * np.exp(-(((reach - 13) / 11.5) ** 2))
+            fan *= np.exp(-(((angle + 0.08) / 0.85) ** 4))
+            bent = angle + 0.006 * reach * w6
+            rays = value_noise(bent * 3.4, reach / 26, 0.5 + (0.0 if side > 0 else 7.0), seed + 68)
+            fine = value_noise(bent * 6.5, reach / 16, 2.5 + (0.0 if side > 0 else 7.0), seed + 69)
+            apart = max(reach, 4.0) / 3.4
+            depth += fan * (
+                0.5 * _groove(rays, apart, 0.75) + 0.18 * _groove(fine, apart / 2, 0.45)
+            )
+        # Lower lid: fine lines below the lashes that follow it outwards, and the tear trough.
+        mask = _spot(x, y, 32.0, -10.5, 17.0, 6.0)
+        if mask > 0.01:
+            follow = y + 0.012 * (x - 31.0) ** 2 + 0.25 * w6
+            lines = value_noise(side / 17 + 0.08 * w2, follow / 2.6, z / 60, seed + 70)
+            depth += mask * 0.24 * _groove(lines, 2.6, 0.42)
+        gap, share = _along(x, y, _TEAR)
+        depth += 0.16 * np.exp(-((gap / 1.7) ** 2)) * np.sin(np.pi * min(max(share, 0.0), 1.0))
+        # Fold from nose to mouth, the corner's line below it, and lines beside both.
+        gap, share = _along(x, y, _NASOLABIAL)
+        if abs(gap) < 12:
+            gap += 0.35 * w6
+            ends = np.sin(np.pi * min(max(share * 0.92 + 0.08, 0.0), 1.0)) ** 0.6
+            depth += (
+                0.85
+                * ends
+                * (np.exp(-((gap / 1.15) ** 2)) - 0.35 * np.exp(-(((gap - 3.0) / 2.0) ** 2)))
+            )
+            beside = value_noise(gap / 4.4 + 0.5, share * 5, 3.0, seed + 71)
+            depth += 0.22 * ends * np.exp(-((gap / 7.0) ** 2)) * _groove(beside, 4.4, 0.6)
+        gap, share = _along(x, y, _MARIONETTE)
+        depth += 0.4 * np.exp(-(((gap + 0.3 * w6) / 1.0) ** 2)) * np.sin(np.pi * share) ** 0.7
+        # Chin: the fold above it, and the dimples of a knotted mentalis.
+        gap, share = _along(x, y, _MENTOLABIAL)
+        depth += 0.45 * np.exp(-(((gap + 0.3 * w6) / 1.5) ** 2)) * (1 - share) ** 0.5
+        mask = _spot(x, y, 0.0, -103.0, 17.0, 11.0)
+        if mask > 0.01:
+            knots = cell_edges(side / 4.3 + 0.18 * w2, y / 4.3, z / 4.3, seed + 72)
+            depth += mask * 0.42 * (np.exp(-((knots / 0.22) ** 2)) - 0.25)
+        # Lines that purse the lips.
+        if lip_depth < 0.5 and x < 26:
+            mask = np.exp(-(((lip_depth + 2.5) / 3.2) ** 2)) * (1 - (x / 27) ** 4)
+            purse = value_noise((side + 0.5 * w6) / 3.4, y / 30, z / 60, seed + 73)
+            depth += mask * 0.30 * _groove(purse, 3.4, 0.5)
+        # Rings round the neck.
+        if y < -118:
+            rings = value_noise(side / 90, (y + 1.6 * w6 + 0.03 * z) / 15, z / 90, seed + 74)
+            depth += min(1.0, (-118 - y) / 8) * 0.42 * _groove(rings, 15, 1.0)
+        found[n] = -depth * (1 - min(max(scalp, 0.0), 1.0)) * (1 - hidden)
+    return found
