@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from ..cache import Arrays, cached_arrays
 from .hairline import scalp_cover
 from .head import Head, Part
@@ -31,6 +33,8 @@ def groomed(head: Head, level: str, recipe: Recipe) -> Head:
     arrays = cached_arrays("groom", key, lambda: _to_arrays(_grown(head, recipe)))
     others = [part for part in head.parts if part.name not in GROOMED]
     cover = scalp_cover(getattr(head.drawn, "reference", head.drawn.vertices), recipe)
+    if "ear" in head.drawn.region_names:
+        cover = np.where(head.drawn.regions == head.drawn.region_names.index("ear"), 0.0, cover)
     return replace(
         head,
         parts=(*others, *_from_arrays(arrays)),

@@ -71,7 +71,7 @@ def painted(cage: Cage, limit: Limit, vertices: FloatArray) -> Paint:
     canvas.blend(MOUTH, canvas.region("mouth_inner"))
     canvas.blend(NOSTRIL, 0.95 * canvas.region("nostril", blur=1))
     canvas.blend(BROW_SHADE, 0.26 * _brow_mask(canvas))
-    hair = scalp_cover(vertices)
+    hair = scalp_cover(vertices) * (1 - canvas.region("ear", blur=1))
     # Where hair is thin the skin shows between it; the viewer draws the single hairs there.
     canvas.blend(SCALP_HAIR, 0.9 * hair**3)
     _paint_unevenness(canvas)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..head import DrawnSurface, Part
 from ..noise import noise as smooth_noise
 from ..recipe import STANDARD, Recipe
 from .cards import Cards, cards_part
-from .scalp import Scalp
+from .scalp import EAR_CENTER, EAR_RADII, Scalp
 from .strand_texture import CLUMPS, LOOSE
 from .strands import Strands, strand_part
 from .styles import Style, style_of
@@ -30,8 +31,18 @@ ROOT_LIGHT = 0.42
 INNER_LIGHT = 0.5
 """Light that reaches the lowest layer of cards, of that on the outermost."""
 SEGMENT = 6.5
-"""Length of a card's pieces, mm; between these numbers of them:"""
-SEGMENTS = (2, 5)
+"""Length of a card's pieces where their number allows, mm."""
+LEAST = 0.5
+"""No card grows where hair is thinner than this, or it would stand alone as a tuft."""
+HEM = -96.0
+"""Where a bob ends, mm: at the chin."""
+HANG_AXIS = np.array([0.0, -8.0])
+"""Middle of the head that hanging hair turns in to, as (x, z), mm."""
+FACE_EDGE = 44.0
+"""No hair hangs further forward than this at the height of the eyes, mm."""
+COIL_LENGTH = 24.0
+"""Length of hair in one turn of a curl, mm."""
+COIL_RADIUS = (3.0, 6.0)
 CLUMPING = (13.0, 26.0)
 """Hair shorter than this stands singly, longer than this in clumps, mm."""
 
@@ -46,7 +57,8 @@ def hair_parts(skin: DrawnSurface, recipe: Recipe = STANDARD) -> list[Part]:
     style = style_of(recipe)
     scalp = Scalp(skin, recipe)
     noise = np.random.default_rng([31, recipe.seed])
-    cards = _combed_cards(scalp, style, noise)
+    grow = {"combed": _combed, "hanging": _hanging, "coiled": _coiled}[style.kind]
+    cards = _card_groups(scalp, style, grow, noise)
     strands = [_edge(scalp, style, noise), _flyaways(scalp, style, noise)]
     parts = [cards_part("hair", cards)] if any(len(group.lines) for group in cards) else []
     single = strands[0] + strands[1]
@@ -64,8 +76,14 @@ class _Grown:
     tangents: FloatArray
 
 
-def _combed_cards(scalp: Scalp, style: Style, noise: np.random.Generator) -> list[Cards]:
-    roots, mask = scalp.scatter(style, style.density, noise, least=0.3)
+Grow = Callable[
+    [Scalp, Style, FloatArray, FloatArray, FloatArray, int, np.random.Generator], _Grown
+]
+"""Makes lines of so many pieces from roots (n, 3), lengths and rises (n,)."""
+
+
+def _card_groups(scalp: Scalp, style: Style, grow: Grow, noise: np.random.Generator) -> list[Cards]:
+    roots, mask = scalp.scatter(style, style.density, noise, least=LEAST)
     count = len(roots)
     if count == 0:
         return []
@@ -78,12 +96,16 @@ def _combed_cards(scalp: Scalp, style: Style, noise: np.random.Generator) -> lis
     width = style.at(style.width, y) * noise.uniform(0.7, 1.25, count) * (0.6 + 0.4 * thin)
     colors = strand_colors(scalp.recipe, count, noise, spread=0.45)
     edge = 1 - smoothstep(0.75, 1.0, mask)
-    lanes = _lanes(length * (1 - 0.8 * edge), layer, mask, noise)
-    segments = np.clip(np.ceil(length / SEGMENT), *SEGMENTS).astype(np.int64)
+    # At the edge hairs show singly, unless they are long.
+    loosened = 0.8 * edge if style.kind == "combed" else 0.0
+    lanes = _lanes(length * (1 - loosened), layer, mask, noise)
+    if style.kind == "coiled":  # curls hang together, however long they are
+        lanes = np.clip(lanes, 0, 4)
+    segments = np.clip(np.ceil(length / SEGMENT), *style.segments).astype(np.int64)
     cards = []
     for pieces in np.unique(segments):
         some = segments == pieces
-        grown = _combed(scalp, style, roots[some], length[some], rise[some], int(pieces), noise)
+        grown = grow(scalp, style, roots[some], length[some], rise[some], int(pieces), noise)
         light = _light(layer[some], edge[some], int(pieces) + 1)
         tinted = light[..., None] * colors[some, None, :]
         cards.append(_cards(grown, width[some], tinted, lanes[some], noise))
@@ -174,6 +196,135 @@ def _combed(
     return _Grown(grown, np.stack(normals, axis=1), tangents)
 
 
+def _hanging(
+    scalp: Scalp,
+    style: Style,
+    roots: FloatArray,
+    length: FloatArray,
+    rise: FloatArray,
+    pieces: int,
+    noise: np.random.Generator,
+) -> _Grown:
+    """Return lines that lie on the head as far as it carries them, then hang and turn in."""
+    count = len(roots)
+    turn = style.ruffle * (
+        1.2 * smooth_noise(roots, 16.0, 41 + scalp.recipe.seed) + noise.normal(0, 0.4, count)
+    )
+    # All end at one height, the chin's, a little lower behind.
+    hem = HEM - 6 * smoothstep(-20, 40, roots[:, 2]) + noise.normal(0, 4.0, count)
+    _, normal = scalp.height(roots)
+    place = roots - ROOT_DEPTH * normal
+    lines, normals = [place], [normal]
+    fallen = np.zeros((count, 1))
+    # Its way over the head takes the longer, the higher it begins.
+    way = 0.72 * np.linalg.norm(roots[:, [0, 2]] - HANG_AXIS, axis=1)
+    reach = np.maximum(roots[:, 1] - hem, 12.0) + np.maximum(66 - way, 0)
+    step = np.minimum(reach, length) / pieces
+    for k in range(pieces):
+        share = (k + 1) / pieces
+        over = turned(flow(scalp, style, place, normal), normal, turn)
+        drop = np.column_stack([np.zeros((count, 1)), np.full((count, 1), -1.0), np.zeros(count)])
+        heading = over + fallen * (drop - over)
+        heading /= np.maximum(np.linalg.norm(heading, axis=1, keepdims=True), 1e-9)
+        place = place + step[:, None] * heading
+        below = place[:, 1] < HEM + 22
+        inwards = place * [1.0, 0.0, 1.0] - [0, 0, HANG_AXIS[1]]
+        inwards /= np.maximum(np.linalg.norm(inwards, axis=1, keepdims=True), 1e-9)
+        place = place - np.where(below, 0.16 * step, 0.0)[:, None] * inwards
+        lifted = rise * min(1.0, 0.35 + 2.5 * share)
+        place, normal = _clear(scalp, place, lifted)
+        fallen = np.maximum(fallen, smoothstep(0.35, 0.1, normal[:, 1:2]))
+        lines.append(place)
+        normals.append(normal)
+    grown = np.stack(lines, axis=1)
+    tangents = np.gradient(grown, axis=1)
+    tangents /= np.maximum(np.linalg.norm(tangents, axis=2, keepdims=True), 1e-9)
+    return _Grown(grown, np.stack(normals, axis=1), tangents)
+
+
+def _clear(scalp: Scalp, points: FloatArray, lifted: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return points (n, 3) pushed out of head, ears and face, and which way the hair there faces.
+
+    Args:
+        scalp: The head.
+        points: Places of hair.
+        lifted: How far each keeps off the scalp [mm], shape (n,).
+    """
+    height, normal = scalp.height(points)
+    points = points + np.maximum(lifted - height, 0)[:, None] * normal
+    # Past the ear, hair lies on it.
+    aside = np.sign(points[:, :1])
+    from_ear = (points - EAR_CENTER * np.hstack([aside, np.ones((len(points), 2))])) / EAR_RADII
+    inside = np.linalg.norm(from_ear, axis=1)
+    layer = (0.35 * lifted / EAR_RADII[0])[:, None]
+    pushed = np.where((inside < 1 + layer[:, 0])[:, None], _to_side(from_ear, aside, layer), 0.0)
+    points = points + pushed * EAR_RADII
+    # Nothing hangs into the face: a curtain of hair ends beside it.
+    face = FACE_EDGE + 0.25 * np.maximum(points[:, 1] - 10, 0) - 1.6 * lifted
+    front_ = points[:, 1] < 52
+    points[:, 2] = np.where(front_, np.minimum(points[:, 2], face), points[:, 2])
+    outward = points * [1.0, 0.0, 1.0] - [0, 0, HANG_AXIS[1]]
+    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
+    low = smoothstep(20, -30, points[:, 1])[:, None]
+    mixed = normal + low * (outward - normal)
+    return points, mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-9)
+
+
+def _to_side(from_ear: FloatArray, aside: FloatArray, layer: FloatArray) -> FloatArray:
+    """Return the push (n, 3), in radii, that takes points out of the ear's ball sideways."""
+    across = np.linalg.norm(from_ear[:, 1:], axis=1, keepdims=True)
+    out = np.sqrt(np.maximum((1 + layer) ** 2 - across**2, 0))
+    return np.asarray(
+        np.hstack([aside * np.maximum(out - aside * from_ear[:, :1], 0), 0 * from_ear[:, 1:]])
+    )
+
+
+def _coiled(
+    scalp: Scalp,
+    style: Style,
+    roots: FloatArray,
+    length: FloatArray,
+    rise: FloatArray,
+    pieces: int,
+    noise: np.random.Generator,
+) -> _Grown:
+    """Return lines that stand off the head and wind about their way: curls."""
+    count = len(roots)
+    _, normal = scalp.height(roots)
+    # Curls stand off, fall over a little, and each goes its own way.
+    stray = noise.normal(0, style.ruffle, (count, 3))
+    axis = normal * (rise / length)[:, None] * 1.5 + stray + [0, -0.15, 0]
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    first = np.cross(axis, noise.normal(0, 1, (count, 3)))
+    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-9)
+    second = np.cross(axis, first)
+    along = np.linspace(0, 1, pieces + 1)
+    turns = length / COIL_LENGTH * noise.uniform(0.8, 1.25, count)
+    radius = noise.uniform(*COIL_RADIUS, count)[:, None] * np.minimum(1, 3.0 * along)[None, :]
+    angle = 2 * np.pi * turns[:, None] * along[None, :] * noise.choice([-1, 1], count)[:, None]
+    distance = (0.78 * length)[:, None] * along[None, :]
+    lines = (roots - ROOT_DEPTH * normal)[:, None] + distance[..., None] * axis[:, None]
+    lines = lines + (radius * (np.cos(angle) - 1 * (along < 0)))[..., None] * first[:, None]
+    lines = lines + (radius * np.sin(angle))[..., None] * second[:, None]
+    flat, least = lines[:, 1:].reshape(-1, 3), np.repeat(along[1:] * 3.0, count)
+    height, _ = scalp.height(flat)
+    least = np.tile(along[1:] * 3.0, count)
+    ground = np.repeat(normal, pieces, axis=0)
+    flat = flat + np.clip(least - height, 0, 25)[:, None] * ground
+    over_face = (flat[:, 2] > 62) & (flat[:, 1] < 62)
+    flat[:, 1] = np.where(over_face, 62 + 0.2 * (flat[:, 1] - 62), flat[:, 1])
+    lines = np.concatenate([lines[:, :1], flat.reshape(count, pieces, 3)], axis=1)
+    tangents = np.gradient(lines, axis=1)
+    tangents /= np.maximum(np.linalg.norm(tangents, axis=2, keepdims=True), 1e-9)
+    # A curl faces away from its own axis, and from the head.
+    curl = radius[..., None] * (
+        np.cos(angle)[..., None] * first[:, None] + np.sin(angle)[..., None] * second[:, None]
+    )
+    faces = normal[:, None] + 0.16 * curl
+    faces /= np.linalg.norm(faces, axis=2, keepdims=True)
+    return _Grown(lines, faces, tangents)
+
+
 def flow(scalp: Scalp, style: Style, points: FloatArray, normals: FloatArray) -> FloatArray:
     """Return which way hair lies at points (n, 3) with scalp normals (n, 3): unit tangents."""
     from_whorl = points - WHORL
@@ -224,10 +375,10 @@ def _edge(scalp: Scalp, style: Style, noise: np.random.Generator) -> Strands:
     keep = noise.uniform(size=len(roots)) < smoothstep(0.98, 0.5, mask)
     roots, mask = roots[keep], mask[keep]
     count, y = len(roots), roots[:, 1]
-    length = np.minimum(style.at(style.length, y), 15.0) * (0.35 + 0.65 * mask)
+    length = np.minimum(style.at(style.length, y), 17.0) * (0.35 + 0.65 * mask)
     rise = np.minimum(style.at(style.rise, y), 4.0) * noise.uniform(0.1, 0.8, count)
     grown = _combed(scalp, style, roots, length * noise.uniform(0.5, 1.1, count), rise, 2, noise)
-    return _single(scalp, grown, 0.08 + 0.08 * mask, noise)
+    return _single(scalp, grown, 0.10 + 0.09 * mask, noise)
 
 
 def _single(scalp: Scalp, grown: _Grown, width: FloatArray, noise: np.random.Generator) -> Strands:

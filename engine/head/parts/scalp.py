@@ -15,8 +15,8 @@ from .styles import Measures, Style
 COVERED = ("scalp", "temple", "forehead", "neck", "preauricular", "mandible", "brow", "cheek")
 """Regions that hair may lie on."""
 NEIGHBOURS = 3
-EAR_CENTER = np.array([79.0, -16.0, -19.0])
-EAR_RADII = np.array([16.0, 36.0, 24.0])
+EAR_CENTER = np.array([72.0, -16.0, -8.0])
+EAR_RADII = np.array([21.0, 40.0, 29.0])
 """What hair keeps clear of beside the head, mm: an ellipsoid about each ear."""
 CANDIDATES = 3.0
 """Places tried for each root, so that roots keep their distance."""

@@ -29,6 +29,7 @@ class Style:
         sweep: How far hair on top is combed aside, to the right; 1 is wholly.
         ruffle: How much neighbouring clumps differ in direction, radians.
         stiffness: How far hair goes on straight where the head bends away from it, 0 to 1.
+        segments: Fewest and most pieces of a card.
         flyaways: Single hairs per square centimetre that stand off.
         edge: Baby hairs per square centimetre of the hairline.
     """
@@ -42,8 +43,9 @@ class Style:
     sweep: float = 0.0
     ruffle: float = 0.25
     stiffness: float = 0.35
+    segments: tuple[int, int] = (2, 5)
     flyaways: float = 1.2
-    edge: float = 26.0
+    edge: float = 30.0
 
     def at(self, measures: Measures, y: FloatArray) -> FloatArray:
         """Return one of the measures at heights y (n,), shape (n,)."""
@@ -75,7 +77,7 @@ STYLES: Mapping[str, Style] = {
         length=(5.0, 7.0, 10.0, 15.0, 23.0, 31.0, 33.0),
         rise=(0.5, 0.9, 1.8, 3.6, 8.0, 13.0, 10.0),
         width=(6.5, 7.0, 7.0, 6.5, 5.8, 5.4, 5.4),
-        density=(5.0, 6.0, 6.4, 6.4, 6.6, 6.8, 7.0),
+        density=(4.2, 4.8, 5.2, 5.4, 5.6, 5.7, 5.8),
         sweep=0.35,
         ruffle=0.42,
     ),
@@ -91,20 +93,23 @@ STYLES: Mapping[str, Style] = {
     ),
     "bob": Style(
         kind="hanging",
+        segments=(7, 7),
         length=(70.0, 90.0, 110.0, 135.0, 160.0, 185.0, 195.0),
         rise=(5.0, 6.0, 8.0, 9.0, 9.0, 8.0, 6.0),
         width=(6.0, 6.5, 7.0, 7.0, 7.5, 8.0, 8.0),
-        density=(3.0, 3.2, 3.2, 3.0, 2.8, 3.0, 3.4),
+        density=(2.6, 2.8, 2.8, 2.8, 3.2, 3.6, 4.0),
         parting=8.0,
         ruffle=0.10,
-        flyaways=1.2,
+        flyaways=0.0,
+        edge=18.0,
     ),
     "curly": Style(
         kind="coiled",
+        segments=(7, 9),
         length=(16.0, 24.0, 32.0, 40.0, 46.0, 50.0, 48.0),
         rise=(5.0, 9.0, 15.0, 24.0, 32.0, 36.0, 34.0),
-        width=(3.0, 3.4, 3.8, 4.0, 4.2, 4.4, 4.4),
-        density=(5.5, 5.0, 4.4, 4.2, 4.2, 4.2, 4.2),
+        width=(3.6, 4.4, 5.2, 6.0, 6.4, 6.6, 6.6),
+        density=(5.5, 5.4, 5.0, 4.8, 4.6, 4.6, 4.6),
         ruffle=0.5,
         flyaways=0.0,
     ),

@@ -13,7 +13,7 @@ from engine.head.hairline import hair_mask, recession, scalp_cover
 from engine.head.head import Part
 from engine.head.parts.brows import brows_part
 from engine.head.parts.hair import hair_parts
-from engine.head.parts.scalp import Scalp
+from engine.head.parts.scalp import EAR_CENTER, EAR_RADII, Scalp
 from engine.head.parts.strand_texture import HEIGHT, LANES, WIDTH, hair_texture
 from engine.head.recipe import HAIR_COLORS, HAIR_STYLES, STANDARD, Recipe
 
@@ -139,3 +139,12 @@ def test_what_rides_the_skin_is_light(head: Head) -> None:
     riding = {part.name: len(part.vertices) for part in hair if part.follows == "skin"}
     assert set(riding) == {"brows", "lashes"}
     assert sum(riding.values()) <= 9_000
+
+
+def test_hanging_hair_goes_over_the_ears(parts: dict[str, list[Part]]) -> None:
+    bob = parts["bob"][0]
+    assert bob.uvs is not None
+    free = bob.vertices[bob.uvs[:, 1] > 0.4]
+    away = (np.abs(free * [1, 0, 0]) + free * [0, 1, 1] - EAR_CENTER) / (0.8 * EAR_RADII)
+    inside = np.linalg.norm(away, axis=1) < 1
+    assert inside.mean() < 0.01
