@@ -32,7 +32,8 @@ def groomed(head: Head, level: str, recipe: Recipe) -> Head:
     key = source_key(f"{level}-{[getattr(recipe, field) for field in FIELDS]}")
     arrays = cached_arrays("groom", key, lambda: _to_arrays(_grown(head, recipe)))
     others = [part for part in head.parts if part.name not in GROOMED]
-    cover = scalp_cover(getattr(head.drawn, "reference", head.drawn.vertices), recipe)
+    drawn = head.drawn
+    cover = scalp_cover(drawn.vertices if drawn.reference is None else drawn.reference, recipe)
     if "ear" in head.drawn.region_names:
         cover = np.where(head.drawn.regions == head.drawn.region_names.index("ear"), 0.0, cover)
     return replace(
