@@ -144,10 +144,11 @@ def settle(
     return [Face(rig, simulator.frame(str(i)).displacements) for i in range(len(keyframes))]
 
 
-def measure_units(rig: Rig, *, model: Model | None = None) -> list[Measured]:
-    """Return every landmark of the rig's action units at intensity 1."""
+def measure_units(rig: Rig, *, model: Model | None = None, seconds: float = 1.0) -> list[Measured]:
+    """Return every landmark of the rig's action units at intensity 1, after `seconds`."""
     units = sorted({landmark.unit for landmark in LANDMARKS if landmark.unit in rig.action_units})
-    faces = settle(rig, [Keyframe(action_units={unit: 1.0}) for unit in units], model=model)
+    keyframes = [Keyframe(action_units={unit: 1.0}) for unit in units]
+    faces = settle(rig, keyframes, seconds=seconds, model=model)
     by_unit: Mapping[str, Face] = dict(zip(units, faces, strict=True))
     return [
         Measured(landmark, landmark.measure(by_unit[landmark.unit]))

@@ -219,13 +219,21 @@ def bench(
 @app.command()
 def measure(
     rig: Annotated[str, typer.Option(help="Rig to measure, or a person.")] = "standard",
+    people: Annotated[
+        bool, typer.Option("--people", help="Measure the action units on everybody instead.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Measure the action units against human motion, and how well the tissue behaves."""
     from engine import EngineError, builtin_rig
 
-    from .measuring import markdown, measure_rig
+    from .measuring import markdown, measure_people, measure_rig, people_markdown
 
+    if people:
+        with _console.status("measuring") as status:
+            everybody = measure_people(lambda name: status.update(f"measuring {name}"))
+        typer.echo(json.dumps(everybody, indent=2) if as_json else people_markdown(everybody))
+        return
     try:
         with _console.status("measuring") as status:
             figures = measure_rig(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from engine import Keyframe, Rig, judge, measure_units
+from engine import Keyframe, Rig, builtin_rig, judge, measure_units, people
 
 Stage = Callable[[str], None]
 
@@ -78,6 +78,31 @@ def markdown(figures: dict[str, Any]) -> str:
             f"| {row['asymmetry_mm']:.2f} | {row['residual_speed_mm_s']:.2f} "
             f"| {row['settling_ms']} | {row['path_dependence_mm']:.2f} |"
         )
+    return "\n".join(lines)
+
+
+def measure_people(show: Stage) -> dict[str, dict[str, list[float | bool]]]:
+    """Return, by person and landmark, the motion at full intensity, mm, and whether it is right."""
+    figures: dict[str, dict[str, list[float | bool]]] = {}
+    for name in ("standard", *people()):
+        show(name)
+        figures[name] = {
+            f"{m.landmark.unit} {m.landmark.what}": [round(m.value, 2), m.direction_right]
+            for m in measure_units(builtin_rig(name))
+        }
+    return figures
+
+
+def people_markdown(figures: dict[str, dict[str, list[float | bool]]]) -> str:
+    """Return the people's figures as a Markdown table, a landmark a row."""
+    names = list(figures)
+    lines = [f"| motion, mm | {' | '.join(names)} |", "|---|" + "---|" * len(names)]
+    for landmark in figures[names[0]]:
+        cells = [
+            f"{value:.1f}" + ("" if right else " (WRONG WAY)")
+            for value, right in (figures[name][landmark] for name in names)
+        ]
+        lines.append(f"| {landmark} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 

@@ -45,7 +45,7 @@ _PER_FULL_AGE: Mapping[str, float] = {
     "eye_depth": 1.2,
     "nasolabial": 3.4,
     "marionette": 3.0,
-    "jowl": 4.6,
+    "jowl": 4.0,
     "prejowl": 2.4,
     "submental": 2.6,
     "neck_bands": 2.8,

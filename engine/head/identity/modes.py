@@ -80,10 +80,8 @@ FORMS: Mapping[str, tuple[Term, ...]] = {
         Bump("C8_10", (80, 40, 80), stretch=(0.018, 0, 0.010), offset=(0, -42, -35)),
     ),
     "larynx": (Bump("C8_10", (9, 12, 16), (0, 0, 1), offset=(0, -24, -2)),),
-    "ear_length": (
-        Bump("W9_2", (16, 40, 34), stretch=(0, 0.018, 0.010), offset=(9, 5, -46)),
-    ),
-    "ear_out": (Bump("W9_2", (12, 34, 22), (1, 0, 0), offset=(14, 5, -56)),),
+    "ear_length": (Bump("pa", (16, 34, 30), stretch=(0, 0.019, 0.010), offset=(-6, -1, 12)),),
+    "ear_out": (Bump("pa", (12, 30, 16), (1, 0, 0), offset=(2, 0, -3)),),
 }  # fmt: skip
 SOFT: Mapping[str, tuple[Term, ...]] = {
     "cheek": (Bump("C6_4", (17, 17, 26), (0.62, 0, 0.75), offset=(-2, 3, 0)),),
@@ -109,7 +107,7 @@ SOFT: Mapping[str, tuple[Term, ...]] = {
     "brow_ptosis": (Bump("E4_6", (16, 9, 18), (0, -1, 0)),),
     "neck_bands": (Bump("C8_10", (5, 26, 20), (0, 0, 1), offset=(11, -26, -2)),),
     "prejowl": (Bump("C5_8", (8, 8, 14), (-0.2, 0.5, -0.8)),),
-    "lobule": (Bump("W9_2", (14, 10, 16), (0, -1, 0.1), offset=(4, -24, -40)),),
+    "lobule": (Bump("sba", (11, 9, 12), (0, -1, 0.1)),),
 }
 
 MODES: Mapping[str, tuple[Term, ...]] = {**MEASURED, **LIDS, **FORMS, **SOFT}
