@@ -1,7 +1,10 @@
 // The form of resting skin that its light depends on: how sharply it bends, and where it is thin.
 
 /** Skin that light shines through from behind, 0..1, by region of the surface. */
-const THIN: Record<string, number> = { ear: 1, ala: 0.22, nostril: 0.2, columella: 0.15 };
+const THIN: Record<string, number> = { ear: 0.8, ala: 0.22, nostril: 0.2, columella: 0.15 };
+/** Curvature below which skin covers something thick, and above which it is an edge [1/mm]. */
+const FLAT = 0.03;
+const SHARP = 0.14;
 /** Rounds of averaging: light blurs what is narrower than some millimetres anyway. */
 const ROUNDS = 3;
 /** Above this [1/mm], e.g. on the rim of a lid, light can hardly reach farther round. */
@@ -38,10 +41,15 @@ export function skinForm(
   for (let vertex = 0; vertex < count; vertex++) {
     form[vertex * 2]! /= Math.max(1, degree[vertex]!);
     const region = regionOf === null ? '' : (regionNames[regionOf[vertex]!] ?? '');
-    form[vertex * 2 + 1] = THIN[region] ?? 0;
+    form[vertex * 2 + 1] = (THIN[region] ?? 0) * edgeShare(Math.abs(form[vertex * 2]!));
   }
   for (let round = 0; round < ROUNDS; round++) average(form, edges, degree);
   return form;
+}
+
+/** Thin skin bends: an ear's rim and folds do, the skin around the ear does not. */
+function edgeShare(bend: number): number {
+  return Math.min(1, Math.max(0, (bend - FLAT) / (SHARP - FLAT)));
 }
 
 /** How much the normal turns along an edge [1/mm]. */

@@ -17,14 +17,22 @@ describe('skinForm', () => {
     expect(inside[middle * 2]).toBeCloseTo(-1 / 50, 4);
   });
 
-  it('is flat in a plane, and thin at ears and nostrils', () => {
+  it('is thin where an ear bends, and not in the flat skin around it', () => {
     const plane = {
       positions: [0, 0, 0, 0.001, 0, 0, 0, 0.001, 0, 0.001, 0.001, 0],
       normals: [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1],
       index: [0, 1, 2, 2, 1, 3],
     };
-    const form = skinForm(plane, [1, 1, 1, 1], ['cheek', 'ear']);
-    expect([...form]).toEqual([0, 1, 0, 1, 0, 1, 0, 1]);
-    expect(skinForm(plane, [0, 0, 0, 0], ['cheek', 'ear'])[1]).toBe(0);
+    expect([...skinForm(plane, [1, 1, 1, 1], ['cheek', 'ear'])]).toEqual(Array(8).fill(0));
+    const ball = new SphereGeometry(0.005, 24, 12);
+    const positions = ball.getAttribute('position').array;
+    const surface = {
+      positions,
+      normals: ball.getAttribute('normal').array,
+      index: ball.getIndex()!.array,
+    };
+    const regions = new Uint16Array(positions.length / 3);
+    expect(skinForm(surface, regions, ['ear'])[1]).toBeCloseTo(0.8, 3);
+    expect(skinForm(surface, regions, ['cheek'])[1]).toBe(0);
   });
 });
