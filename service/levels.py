@@ -104,7 +104,6 @@ def markdown(figures: dict[str, Any]) -> str:
     for name, size in textures["bytes"].items():
         lines.append(f"| {name} | {size / 1000:.0f} |")
     total = sum(textures["bytes"].values()) / 1000
-    lines.append(
-        f"| all, baked in {textures['baked_s']:.1f} s, cached {textures['cached_s']:.2f} s | {total:.0f} |"
-    )
+    baked, cached = textures["baked_s"], textures["cached_s"]
+    lines.append(f"| all, baked in {baked:.1f} s, cached {cached:.2f} s | {total:.0f} |")
     return "\n".join(lines)

@@ -17,11 +17,8 @@ def test_levels_and_textures_are_rows() -> None:
         "person_s": 0.5,
         "cached_s": 0.1,
     }
-    textures = {
-        "bytes": {"albedo.jpg": 900_000, "orm.jpg": 100_000},
-        "baked_s": 9.0,
-        "cached_s": 0.02,
-    }
+    files = {"albedo.jpg": 900_000, "orm.jpg": 100_000}
+    textures = {"bytes": files, "baked_s": 9.0, "cached_s": 0.02}
     table = markdown({"levels": [level], "textures": textures})
     assert "| low | 1,200 | 2,400 | 2,500 | 2.5 | 1.0 | 0.50 | 0.10 |" in table
     assert "| all, baked in 9.0 s, cached 0.02 s | 1000 |" in table
