@@ -167,7 +167,7 @@ def _colored(
         m9 = value_noise(x / 9.5, y / 9.5, z / 9.5, seed + 6)
         m4 = value_noise(x / 3.9, y / 3.9, z / 3.9, seed + 7)
         m1 = value_noise(x / 1.7, y / 1.7, z / 1.7, seed + 8)
-        patches = 0.055 * n14 + 0.06 * n6 + 0.055 * n3 + 0.045 * n1
+        patches = 0.065 * n14 + 0.08 * n6 + 0.075 * n3 + 0.06 * n1
         flush = max(blood, 0.0)
         red = blood * (1 + 0.5 * n6 + 0.45 * n3) + patches * (0.65 + 1.8 * flush) + 0.022 * nf
         brown = melanin * (1 + 0.5 * dark) + (0.022 + 0.028 * dark + 0.02 * age) * m9
@@ -268,7 +268,7 @@ def _colored(
 
         # Wet and hidden skin.
         deep = (0.34, 0.095, 0.088)
-        hole = (0.13, 0.035, 0.027)
+        hole = (0.055, 0.015, 0.012)
         edge_of_lid = (0.50, 0.20, 0.165)
         lash = (0.035, 0.018, 0.013)
         for c in range(3):
