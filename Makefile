@@ -7,7 +7,7 @@ BIN := .venv/bin
 STAMPS := .stamps
 VIEWER_SOURCES := $(shell find static -path static/node_modules -prune -o -type f -print)
 
-.PHONY: run test check bench sheet measure lock clean chromium
+.PHONY: run test check bench levels sheet portraits measure lock clean chromium
 
 run: $(STAMPS)/python $(STAMPS)/viewer
 	$(BIN)/risorius serve --port $(PORT)
@@ -26,13 +26,26 @@ check: $(STAMPS)/python-dev $(STAMPS)/node
 bench: $(STAMPS)/python
 	$(BIN)/risorius bench
 
+levels: $(STAMPS)/python
+	$(BIN)/risorius levels
+
 measure: $(STAMPS)/python
 	$(BIN)/risorius measure
 
 sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
-	$(BIN)/risorius sheet -o docs/expressions.png --view front --size 280
-	$(BIN)/risorius sheet -o docs/emotions.png --view front --size 400 --columns 3 \
+	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 280
+	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 400 --columns 3 \
 		--only happiness,sadness,fear,anger,surprise,disgust
+	$(BIN)/risorius sheet -o docs/people.jpg --people --only rest \
+		--view front,three-quarter,profile --size 240 --columns 6
+	$(BIN)/risorius sheet -o docs/closeups.jpg --rig standard,mei,ruth,kwame --only rest \
+		--view eye,mouth,ear,profile --size 300 --columns 4
+
+# The people's pictures in the viewer.
+portraits: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
+	@mkdir -p static/public/people
+	$(BIN)/risorius sheet -o static/public/people --people --only rest --view front --size 144
+	$(BIN)/risorius sheet -o static/public/people --rig standard,paper --only rest --view front --size 144
 
 # Chromium for the browser test: the system's, else Debian's, else Playwright's own.
 chromium: $(STAMPS)/python-dev

@@ -24,7 +24,8 @@ Show = Callable[[str, float], None]
 CLOSE_UPS = ("eye", "mouth", "ear")
 VIEWS = ("front", "three-quarter", "profile", "left", *CLOSE_UPS)
 PICTURES = (".png", ".jpg", ".jpeg", ".webp")
-_TIMEOUT_MS = 60_000
+_TIMEOUT_MS = 240_000
+"""A first picture waits until the person's maps are baked."""
 _NO_CONTENT = 204
 _LABEL_SHARE = 0.09
 _ROOM = 1.34
