@@ -175,6 +175,9 @@ class NewClip(Body):
     level: Literal["low", "medium", "high"] = Field(
         default="high", description="Detail of the drawn skin."
     )
+    textures: StrictBool = Field(
+        default=True, description="Whether the maps of skin and eyes are embedded."
+    )
     timeline: list[KeyframeBody]
     duration: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = None
     model: ModelChoice = ModelChoice()

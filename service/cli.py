@@ -119,6 +119,9 @@ def clip(
     output: Annotated[Path, typer.Option("-o", "--output", help="GLB file to write.")],
     rig: Annotated[str | None, typer.Option(help="Rig to play it on.")] = None,
     fps: Annotated[int | None, typer.Option(min=1, max=60, help="Frames a second.")] = None,
+    textures: Annotated[
+        bool, typer.Option("--textures/--no-textures", help="Embed the maps of skin and eyes.")
+    ] = True,
 ) -> None:
     """Render a timeline to an animated GLB file, without a server."""
     from .rendering import ClipRefused, render_file
@@ -134,6 +137,7 @@ def clip(
                 output,
                 rig=rig,
                 fps=fps,
+                textured=textures,
                 show=lambda stage, share: progress.update(task, description=stage, completed=share),
             )
     except ClipRefused as refused:

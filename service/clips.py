@@ -230,7 +230,8 @@ class Clips:
         )
         simulated = time.perf_counter()
         drawn = replace(rendered, rig=rig.at_level(request.level))
-        size = await asyncio.to_thread(self._write, clip, drawn, timeline, job)
+        maps = await self._rigs.textures(rig) if request.textures else {}
+        size = await asyncio.to_thread(self._write, clip, drawn, timeline, maps, job)
         ended = time.perf_counter()
         return {
             "frames": len(rendered.displacements),
@@ -242,9 +243,18 @@ class Clips:
             "warnings": warnings,
         }
 
-    def _write(self, clip: str, rendered: Clip, timeline: Timeline, job: _Job) -> int:
+    def _write(
+        self,
+        clip: str,
+        rendered: Clip,
+        timeline: Timeline,
+        maps: Mapping[str, bytes],
+        job: _Job,
+    ) -> int:
         self._folder.mkdir(parents=True, exist_ok=True)
-        data = clip_to_glb(rendered, progress=job.written, cancelled=job.cancelled.is_set)
+        data = clip_to_glb(
+            rendered, textures=maps, progress=job.written, cancelled=job.cancelled.is_set
+        )
         self._path(clip, "glb").write_bytes(data)
         self._path(clip, "csv").write_text(ground_truth_csv(rendered, timeline))
         return len(data)

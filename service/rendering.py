@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from engine import EngineError, builtin_rig, clip_to_glb, record
+from engine import EngineError, builtin_rig, clip_to_glb, record, textures_of
 
 from .bodies import NewClip, explain
 from .commands import clip_timeline, model_of
@@ -24,7 +24,15 @@ class ClipRefused(Exception):
     """A file that cannot be rendered; the message is one sentence."""
 
 
-def render_file(source: Path, output: Path, *, rig: str | None, fps: int | None, show: Show) -> str:
+def render_file(
+    source: Path,
+    output: Path,
+    *,
+    rig: str | None,
+    fps: int | None,
+    show: Show,
+    textured: bool = True,
+) -> str:
     """Render `source` to `output` and return one line about it.
 
     Args:
@@ -33,6 +41,7 @@ def render_file(source: Path, output: Path, *, rig: str | None, fps: int | None,
         rig: Overrides the file's rig.
         fps: Overrides the file's frame rate.
         show: Told what is being done, and the share of the work done.
+        textured: Whether the file embeds the maps of skin and eyes, unless the timeline says no.
 
     Raises:
         ClipRefused: If the file cannot be read, played or written.
@@ -53,8 +62,13 @@ def render_file(source: Path, output: Path, *, rig: str | None, fps: int | None,
             model=model_of(clip.model, chosen),
             progress=lambda share: show("simulating", SIMULATION_SHARE * share),
         )
+        maps = None
+        if textured and clip.textures:
+            show("baking the textures", SIMULATION_SHARE)
+            maps = textures_of(chosen)
         data = clip_to_glb(
             rendered,
+            textures=maps,
             progress=lambda share: show(
                 "writing", SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share
             ),

@@ -62,6 +62,17 @@ def tag_of(rig: Rig, level: str) -> str:
     return rig.id if level == FULL else f"{rig.id}-{level}"
 
 
+def export_tag(rig: Rig, level: str, *, textured: bool) -> str:
+    """Return what names a file of a rig that embeds its maps, or leaves them out.
+
+    Raises:
+        Unprocessable: If there is no such level.
+    """
+    tag = tag_of(rig, level)
+    # The maps are this engine's, so a client asks again after an update.
+    return f"{tag}-{_engine_stamp()}" if textured and texture_names(rig) else tag
+
+
 def _named() -> tuple[str, ...]:
     """Return the names of the rigs that come with the engine."""
     return (*BUILTIN_RIGS, *people())
@@ -175,10 +186,14 @@ class Rigs:
             lines.append({"id": row.id, "name": name, "base": row.base})
         return lines
 
-    async def glb(self, rig: Rig, level: str = FULL) -> bytes:
+    async def glb(self, rig: Rig, level: str = FULL, *, textured: bool = True) -> bytes:
         """Return the rest head with its action units as morph targets."""
-        key = f"rig-{tag_of(rig, level)}"
-        return await self._file(key, lambda: rig_to_glb(rig.at_level(level)))
+        return await self.export(
+            rig,
+            f"rig-{export_tag(rig, level, textured=textured)}",
+            lambda maps: rig_to_glb(rig.at_level(level), textures=maps),
+            textured=textured,
+        )
 
     async def surface(self, rig: Rig, level: str = FULL) -> bytes:
         """Return the tissue surface and its map to the drawn surface."""
@@ -197,9 +212,20 @@ class Rigs:
         """Return a rig's textures by file name, baked in the background when nobody has."""
         return await self._textures.get(rig.id, lambda: textures_of(rig))
 
-    async def file(self, key: str, make: Callable[[], bytes]) -> bytes:
-        """Return another file that depends on its `key` alone."""
-        return await self._file(hashlib.sha256(key.encode()).hexdigest()[:32], make)
+    async def export(
+        self, rig: Rig, key: str, make: Callable[[Mapping[str, bytes]], bytes], *, textured: bool
+    ) -> bytes:
+        """Return a file that depends on its `key` alone.
+
+        Args:
+            rig: Whose maps it embeds.
+            key: Its name.
+            make: Writes it with those maps.
+            textured: Whether there are to be any.
+        """
+        maps = await self.textures(rig) if textured else {}
+        name = hashlib.sha256(key.encode()).hexdigest()[:32]
+        return await self._file(name, lambda: make(maps))
 
     def _make_room(self) -> None:
         # A session's row is saved a second after it moved: what is younger may be in use.

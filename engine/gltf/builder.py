@@ -14,10 +14,12 @@ import numpy as np
 import numpy.typing as npt
 import pygltflib
 
-from .materials import MATERIALS, Look
+from .materials import MATERIALS, Look, Maps
+from .tangents import tangents_of
 
 Array = npt.NDArray[Any]
 Extras = Mapping[str, Any]
+Textures = Mapping[str, bytes]
 
 _COMPONENTS = {
     "float32": pygltflib.FLOAT,
@@ -26,6 +28,7 @@ _COMPONENTS = {
     "uint8": pygltflib.UNSIGNED_BYTE,
 }
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+_PNG = b"\x89PNG"
 _SPARSE_GAIN = 0.8
 """A sparse accessor must be at least this much smaller, for it costs the reader a pass."""
 
@@ -54,7 +57,13 @@ class Channel:
 class GlbBuilder:
     """Collects the objects of one GLB file; indices that it returns are glTF indices."""
 
-    def __init__(self, extras: Extras) -> None:
+    def __init__(self, extras: Extras, textures: Textures | None = None) -> None:
+        """Begin a file.
+
+        Args:
+            extras: What the file says of itself.
+            textures: The head's maps by file name, to be embedded where a material shows them.
+        """
         # pygltflib is annotated in part only, and wrongly where targets may be plain dicts.
         self._gltf: Any = pygltflib.GLTF2(
             asset=pygltflib.Asset(generator="Risorius", extras=dict(extras)),
@@ -63,7 +72,8 @@ class GlbBuilder:
         )
         self._blob = bytearray()
         self._zeros: dict[int, int] = {}
-        self._materials: dict[str, int] = {}
+        self._materials: dict[tuple[str, bool], int] = {}
+        self._textures = dict(textures or {})
 
     # Accessors
 
@@ -145,7 +155,14 @@ class GlbBuilder:
         material: str,
         targets: Sequence[Mapping[str, int]] = (),
     ) -> pygltflib.Primitive:
-        """Return triangles with vertex `attributes`, each shape (n,) or (n, 2 to 4)."""
+        """Return triangles with vertex `attributes`, each shape (n,) or (n, 2 to 4).
+
+        Where the file embeds the colours of the material, those of the vertices are left out:
+        glTF would multiply the two.
+        """
+        maps = self._maps_of(material) if "TEXCOORD_0" in attributes else None
+        if maps is not None:
+            attributes = self._mapped(attributes, triangles, maps)
         stored = {
             name: self.accessor(
                 np.asarray(values), target=pygltflib.ARRAY_BUFFER, bounds=name == "POSITION"
@@ -159,7 +176,7 @@ class GlbBuilder:
         return pygltflib.Primitive(
             attributes=pygltflib.Attributes(**stored),
             indices=indices,
-            material=self._material(material),
+            material=self._material(material, maps),
             targets=cast(Any, [dict(target) for target in targets]),
         )
 
@@ -180,20 +197,55 @@ class GlbBuilder:
         )
         return self._append(self._gltf.meshes, mesh)
 
-    def _material(self, name: str) -> int:
-        if name not in self._materials:
+    def _mapped(
+        self, attributes: Mapping[str, Array], triangles: Array, maps: Maps
+    ) -> dict[str, Array]:
+        """Return the vertex attributes without colours, and with tangents for a normal map."""
+        mapped = {name: values for name, values in attributes.items() if name != "COLOR_0"}
+        if maps.normal in self._textures:
+            mapped["TANGENT"] = tangents_of(
+                mapped["POSITION"], mapped["NORMAL"], mapped["TEXCOORD_0"], triangles
+            )
+        return mapped
+
+    def _maps_of(self, material: str) -> Maps | None:
+        """Return the maps that a material shows, if the file embeds them."""
+        maps = MATERIALS[material].maps
+        return maps if maps is not None and maps.color in self._textures else None
+
+    def _material(self, name: str, maps: Maps | None) -> int:
+        key = (name, maps is not None)
+        if key not in self._materials:
             material = _material_named(name)
             picture = MATERIALS[name].picture
-            if picture is not None and material.pbrMetallicRoughness is not None:
+            if picture is not None:
                 texture = pygltflib.TextureInfo(index=self.picture(name, picture()))
-                material.pbrMetallicRoughness.baseColorTexture = texture
-            self._materials[name] = self._append(self._gltf.materials, material)
-        return self._materials[name]
+                _shading(material).baseColorTexture = texture
+            if maps is not None:
+                self._lay_on(material, maps)
+            self._materials[key] = self._append(self._gltf.materials, material)
+        return self._materials[key]
 
-    def picture(self, name: str, png: bytes) -> int:
-        """Store a PNG and return the texture that shows it (specification, section 3.8)."""
-        view = self._view(np.frombuffer(png, np.uint8), None)
-        image = pygltflib.Image(name=name, mimeType="image/png", bufferView=view)
+    def _lay_on(self, material: pygltflib.Material, maps: Maps) -> None:
+        """Give a material its maps (specification, sections 3.9.2 and 3.9.3)."""
+        shading = _shading(material)
+        shading.baseColorTexture = pygltflib.TextureInfo(index=self._map(maps.color))
+        if maps.normal in self._textures:
+            material.normalTexture = pygltflib.NormalMaterialTexture(index=self._map(maps.normal))
+        if maps.packed in self._textures:
+            packed = self._map(maps.packed)
+            shading.metallicRoughnessTexture = pygltflib.TextureInfo(index=packed)
+            shading.roughnessFactor = 1.0  # The map says it whole.
+            material.occlusionTexture = pygltflib.OcclusionTextureInfo(index=packed)
+
+    def _map(self, file: str) -> int:
+        return self.picture(file.partition(".")[0], self._textures[file])
+
+    def picture(self, name: str, data: bytes) -> int:
+        """Store a PNG or JPEG; return the texture that shows it (specification, section 3.8)."""
+        view = self._view(np.frombuffer(data, np.uint8), None)
+        kind = "image/png" if data.startswith(_PNG) else "image/jpeg"
+        image = pygltflib.Image(name=name, mimeType=kind, bufferView=view)
         if not self._gltf.samplers:
             # Linear between texels and between mip levels, clamped at the edges.
             self._gltf.samplers.append(
@@ -270,6 +322,10 @@ def _material_named(name: str) -> pygltflib.Material:
         alphaCutoff=look.cutoff,
         doubleSided=look.double_sided,
     )
+
+
+def _shading(material: pygltflib.Material) -> pygltflib.PbrMetallicRoughness:
+    return cast(pygltflib.PbrMetallicRoughness, material.pbrMetallicRoughness)
 
 
 def _alpha_mode(look: Look) -> str:

@@ -12,7 +12,7 @@ from ..arrays import Float32Array, FloatArray, IntArray
 from ..clip import Clip, Progress
 from ..errors import Cancelled
 from .basis import SHARE_DROPPED, MotionBasis, fit_basis
-from .builder import Channel, GlbBuilder, metres
+from .builder import Channel, GlbBuilder, Textures, metres
 from .drawn import DrawnFace
 from .error import FRAMES_AT_ONCE, Check, Motion
 from .pose import RigidMotion, motions
@@ -34,6 +34,7 @@ def clip_to_glb(
     clip: Clip,
     *,
     tolerance: float = 0.05,
+    textures: Textures | None = None,
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> bytes:
@@ -46,6 +47,8 @@ def clip_to_glb(
     Args:
         clip: What to write.
         tolerance: Largest error of any vertex [mm].
+        textures: The rig's maps (`textures_of`), to be embedded; without them vertices have
+            colours.
         progress: Told the share of the work done, 0 to 1.
         cancelled: Asked again and again whether to stop.
 
@@ -63,7 +66,7 @@ def clip_to_glb(
     motion = _drawn_motion(clip, face, progress, check)
     basis = fit_basis(motion, tolerance=tolerance, check=check)
     progress(BASIS_SHARE)
-    builder = GlbBuilder(_extras(clip, basis, tolerance))
+    builder = GlbBuilder(_extras(clip, basis, tolerance), textures)
     pivots = add_pivots(builder, rig.head, rig.jaw)
     skin = add_skin(
         builder,

@@ -7,24 +7,30 @@ import numpy as np
 from ..arrays import FloatArray
 from ..frame import Frame
 from ..rig import Rig
-from .builder import Array, GlbBuilder, metres
+from .builder import Array, GlbBuilder, Textures, metres
 from .drawn import DrawnFace, roots_of, turn_with, unit_normals
 from .materials import look_name
 from .pose import RigidMotion, motions
 from .scene import file_extras, part_attributes, rigid_parts, skin_attributes
 
 
-def face_to_glb(rig: Rig, frame: Frame) -> bytes:
+def face_to_glb(rig: Rig, frame: Frame, *, textures: Textures | None = None) -> bytes:
     """Return the face of `frame` as GLB: what a 3D printer or a still picture needs.
 
     Tissue, jaw, gaze and head pose are all baked into the positions, so that every mesh is in the
     same space and no reader needs to know about nodes, morph targets or animation.
+
+    Args:
+        rig: Whose face it is.
+        frame: How it stands.
+        textures: Its maps (`textures_of`), to be embedded; without them vertices have colours.
     """
     face = DrawnFace.of(rig.head)
     moved = motions(rig.head, rig.jaw, frame.pose)
     vertices = face.skin(frame.displacements)
     normals = face.skin_normals(vertices)
-    builder = GlbBuilder({**file_extras(rig_id=rig.id, rig_name=rig.name), "tick": int(frame.tick)})
+    extras = file_extras(rig_id=rig.id, rig_name=rig.name)
+    builder = GlbBuilder({**extras, "tick": int(frame.tick)}, textures)
     root = builder.node("risorius")
 
     def add(name: str, attributes: dict[str, Array], triangles: Array, material: str) -> None:

@@ -10,7 +10,7 @@ from ..clip import settled_units
 from ..frame import Frame
 from ..head.head import Part
 from ..rig import Rig
-from .builder import GlbBuilder, metres
+from .builder import GlbBuilder, Textures, metres
 from .drawn import DrawnFace
 from .pose import motions
 from .scene import (
@@ -28,7 +28,12 @@ SMALLEST_MOVE = 2e-3
 """
 
 
-def rig_to_glb(rig: Rig, *, progress: Callable[[float], None] | None = None) -> bytes:
+def rig_to_glb(
+    rig: Rig,
+    *,
+    textures: Textures | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> bytes:
     """Return the rest head of `rig` with its action units as morph targets, as GLB.
 
     Weight 1 of target "AU12" is the face settled under AU12 at full intensity, both sides. The
@@ -39,15 +44,18 @@ def rig_to_glb(rig: Rig, *, progress: Callable[[float], None] | None = None) -> 
 
     Args:
         rig: What to write.
+        textures: Its maps (`textures_of`), to be embedded; without them vertices have colours.
         progress: Told the share of the work done, 0 to 1.
     """
     names = tuple(rig.action_units)
-    return targets_to_glb(rig, names, settled_units(rig, progress=progress))
+    return targets_to_glb(rig, names, settled_units(rig, progress=progress), textures=textures)
 
 
-def targets_to_glb(rig: Rig, names: Sequence[str], frames: Sequence[Frame]) -> bytes:
+def targets_to_glb(
+    rig: Rig, names: Sequence[str], frames: Sequence[Frame], *, textures: Textures | None = None
+) -> bytes:
     """Return the rest head of `rig` with one morph target per frame, called `names`."""
-    builder = GlbBuilder(file_extras(rig_id=rig.id, rig_name=rig.name))
+    builder = GlbBuilder(file_extras(rig_id=rig.id, rig_name=rig.name), textures)
     pivots = add_pivots(builder, rig.head, rig.jaw)
     face = DrawnFace.of(rig.head)
     rest = face.rest_positions()

@@ -35,6 +35,7 @@ STREAM_GRID = 2e-5
 def surface_to_glb(rig: Rig) -> bytes:
     """Return the surface file of `rig` as GLB: tissue, skin, map, parts, all at rest."""
     extras = file_extras(rig_id=rig.id, rig_name=rig.name)
+    # Served beside it, so that the face moves before they are baked.
     textures = {Path(name).stem: f"textures/{name}" for name in texture_names(rig)}
     if textures:
         extras["textures"] = textures

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from fastapi import Request
+from fastapi import Query, Request
 from pydantic import BaseModel
 from starlette.responses import Response
 
@@ -47,6 +47,11 @@ TAGGED: dict[int | str, dict[str, Any]] = {
     **GLB_CONTENT,
     304: {"description": "The client has it already."},
 }
+
+
+Textured = Annotated[
+    bool, Query(alias="textures", description="Whether the maps of skin and eyes are embedded.")
+]
 
 
 class GlbResponse(Response):

@@ -10,7 +10,7 @@ from starlette.responses import FileResponse
 from ..bodies import NewClip
 from ..components import Parts
 from ..errors import Refused
-from .answers import ERROR_CONTENT, GLB, GLB_CONTENT, GlbResponse
+from .answers import ERROR_CONTENT, GLB, GLB_CONTENT, GlbResponse, Textured
 
 router = APIRouter(prefix="/api/clips", tags=["clips"])
 CSV_CONTENT: dict[int | str, dict[str, Any]] = {
@@ -42,8 +42,11 @@ async def render_clip(
     parts: Parts,
     response: Response,
     wait: Annotated[float, Query(ge=0, le=60, allow_inf_nan=False)] = 0.0,
+    textured: Textured = True,
 ) -> Any:
     """Queue a clip; with `wait`, answer with its GLB if it is done by then."""
+    if not textured:
+        body = body.model_copy(update={"textures": False})
     row = await parts.clips.submit(body)
     if wait:
         row = await parts.clips.wait(row.id, wait)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -11,8 +12,8 @@ from engine import EngineError, Keyframe, Rig, face_to_glb, format_facs, parse_f
 from ..bodies import NewRig
 from ..components import Parts
 from ..errors import Unprocessable, refused_by_engine
-from ..rigs import FULL, tag_of
-from .answers import TAGGED, GlbResponse, client_has, tagged_glb
+from ..rigs import FULL, export_tag, tag_of
+from .answers import TAGGED, GlbResponse, Textured, client_has, tagged_glb
 
 router = APIRouter(prefix="/api/rigs", tags=["rigs"])
 LevelOfDetail = Annotated[
@@ -44,13 +45,16 @@ async def rig_glb(
     request: Request,
     names: Annotated[str, Query(max_length=16)] = "facs",
     level: LevelOfDetail = FULL,
+    textured: Textured = True,
 ) -> Response:
     """Return the rest head with its action units as morph targets."""
     if names != "facs":
         raise Unprocessable("not_available", "names is 'facs'; 'arkit' is not available yet")
     found = await parts.rigs.get(rig)
-    tag = tag_of(found, level)
-    data = b"" if client_has(request, tag) else await parts.rigs.glb(found, level)
+    tag = export_tag(found, level, textured=textured)
+    if client_has(request, tag):
+        return tagged_glb(request, b"", tag)
+    data = await parts.rigs.glb(found, level, textured=textured)
     return tagged_glb(request, data, tag)
 
 
@@ -73,7 +77,12 @@ async def surface_glb(
 
 @router.get("/{rig}/expressions/{facs}.glb", responses=TAGGED, response_class=GlbResponse)
 async def expression_glb(
-    rig: str, facs: str, parts: Parts, request: Request, level: LevelOfDetail = FULL
+    rig: str,
+    facs: str,
+    parts: Parts,
+    request: Request,
+    level: LevelOfDetail = FULL,
+    textured: Textured = True,
 ) -> Response:
     """Return an expression such as `1C+2C+L12D`, settled and baked."""
     found = await parts.rigs.get(rig)
@@ -84,12 +93,14 @@ async def expression_glb(
     except EngineError as error:
         raise refused_by_engine(error) from error
     expression = format_facs(sorted(terms, key=lambda term: term.key))
-    tag = f"{tag_of(found, level)}-{expression}"
+    tag = f"{export_tag(found, level, textured=textured)}-{expression}"
     if client_has(request, tag):
         return tagged_glb(request, b"", tag)
-    data = await parts.rigs.file(tag, lambda: _expression(found, keyframe, level))
+    data = await parts.rigs.export(
+        found, tag, lambda maps: _expression(found, keyframe, level, maps), textured=textured
+    )
     return tagged_glb(request, data, tag)
 
 
-def _expression(rig: Rig, keyframe: Keyframe, level: str) -> bytes:
-    return face_to_glb(rig.at_level(level), settled(rig, [keyframe])[0])
+def _expression(rig: Rig, keyframe: Keyframe, level: str, maps: Mapping[str, bytes]) -> bytes:
+    return face_to_glb(rig.at_level(level), settled(rig, [keyframe])[0], textures=maps)

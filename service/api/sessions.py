@@ -15,7 +15,7 @@ from ..commands import controls_keyframe, model_of, play_emotion
 from ..components import Components, Parts
 from ..errors import refused_by_engine
 from ..sessions import Session
-from .answers import GLB_CONTENT, GlbResponse
+from .answers import GLB_CONTENT, GlbResponse, Textured
 
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 
@@ -36,11 +36,13 @@ async def list_sessions(parts: Parts) -> dict[str, Any]:
 
 
 @router.get("/{session_id}.glb", responses=GLB_CONTENT, response_class=GlbResponse)
-async def session_glb(session_id: str, parts: Parts) -> Response:
+async def session_glb(session_id: str, parts: Parts, textured: Textured = True) -> Response:
     """Return the face as it stands: plain positions, deformation baked."""
     session = await parts.sessions.get(session_id)
     view = await parts.sessions.view(session)
-    data = await asyncio.to_thread(face_to_glb, session.rig, view.frame)
+    rig = session.rig
+    maps = await parts.rigs.textures(rig) if textured else None
+    data = await asyncio.to_thread(face_to_glb, rig, view.frame, textures=maps)
     return GlbResponse(data, headers={"Cache-Control": "no-store"})
 
 

@@ -49,6 +49,12 @@ class Glb:
         start = entry.get("byteOffset", 0) + offset
         return np.frombuffer(self._blob, dtype, count, start)
 
+    def buffer(self, view: int) -> bytes:
+        """Return the bytes of a buffer view: an image."""
+        entry = self.json["bufferViews"][view]
+        start = entry.get("byteOffset", 0)
+        return self._blob[start : start + entry["byteLength"]]
+
     def node(self, name: str) -> int:
         """Return the index of the only node of that name."""
         (found,) = (i for i, node in enumerate(self.json["nodes"]) if node["name"] == name)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from starlette.testclient import TestClient
 
+import service.rendering
+import service.rigs
+from engine import Rig, texture_names
 from service.app import create_app
 from service.settings import Settings
 
@@ -34,6 +39,21 @@ def until(true: Callable[[], bool], *, seconds: float = 30.0) -> None:
     while not true():
         assert time.monotonic() < deadline, "it did not come true in time"
         time.sleep(0.02)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_bake() -> Iterator[None]:
+    """Stand-ins for the maps of every rig: a bake takes seconds and is tested with the engine."""
+
+    def stand_in(rig: Rig) -> dict[str, bytes]:
+        file = io.BytesIO()
+        Image.new("RGB", (4, 4), (180, 130, 110)).save(file, "JPEG")
+        return dict.fromkeys(texture_names(rig), file.getvalue())
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(service.rigs, "textures_of", stand_in)
+        patch.setattr(service.rendering, "textures_of", stand_in)
+        yield
 
 
 @pytest.fixture(scope="module")

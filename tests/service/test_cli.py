@@ -51,6 +51,14 @@ def test_a_timeline_is_rendered(timeline: Path, tmp_path: Path) -> None:
     assert output.read_bytes()[:4] == b"glTF"
 
 
+def test_a_clip_embeds_the_maps_or_leaves_them_out(timeline: Path, tmp_path: Path) -> None:
+    full, bare = tmp_path / "full.glb", tmp_path / "bare.glb"
+    assert run("clip", timeline, "-o", full, "--fps", 2).exit_code == 0
+    assert run("clip", timeline, "-o", bare, "--fps", 2, "--no-textures").exit_code == 0
+    assert b'"albedo"' in full.read_bytes()
+    assert b'"albedo"' not in bare.read_bytes()
+
+
 @pytest.mark.parametrize(
     ("content", "options", "said"),
     [

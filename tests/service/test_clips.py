@@ -32,6 +32,16 @@ def test_a_short_clip_is_waited_for(client: TestClient) -> None:
     assert clip["report"]["frames"] == 16
 
 
+@pytest.mark.parametrize("asked", ["query", "body"])
+def test_a_clip_leaves_the_maps_out(client: TestClient, asked: str) -> None:
+    params = {"wait": 30, "textures": 0} if asked == "query" else {"wait": 30}
+    body = SMILE if asked == "query" else {**SMILE, "textures": False}
+    bare = client.post("/api/clips", params=params, json=body)
+    full = client.post("/api/clips", params={"wait": 30}, json=SMILE)
+    assert b'"albedo"' not in bare.content
+    assert b'"albedo"' in full.content
+
+
 def test_a_clip_is_queued_and_done(client: TestClient) -> None:
     answer = client.post("/api/clips", json=SMILE)
     assert answer.status_code == 202

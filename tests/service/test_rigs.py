@@ -49,12 +49,41 @@ def test_a_rig_s_file_has_its_units_as_targets(client: TestClient) -> None:
     answer = client.get("/api/rigs/standard.glb")
     assert answer.status_code == 200, answer.text
     rig = client.get("/api/rigs/standard").json()
-    assert answer.headers["ETag"] == f'"{rig["id"]}"'
+    assert answer.headers["ETag"].startswith(f'"{rig["id"]}')
     meshes = glb_json(answer.content)["meshes"]
     names = [mesh["extras"]["targetNames"] for mesh in meshes if mesh.get("extras")]
     assert {unit["name"] for unit in rig["action_units"]} <= set(names[0])
     tag = {"If-None-Match": answer.headers["ETag"]}
     assert client.get("/api/rigs/standard.glb", headers=tag).status_code == 304
+
+
+def images_of(data: bytes) -> list[str]:
+    return [image["name"] for image in glb_json(data).get("images", [])]  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("file", ["standard.glb", "standard/expressions/12C.glb"])
+def test_files_embed_the_maps_or_leave_them_out(client: TestClient, file: str) -> None:
+    full = client.get(f"/api/rigs/{file}")
+    assert set(images_of(full.content)) == {"albedo", "normal", "orm", "eye", "hair_cards"}
+    bare = client.get(f"/api/rigs/{file}", params={"textures": 0})
+    assert images_of(bare.content) == ["hair_cards"]
+    assert bare.headers["ETag"] != full.headers["ETag"]
+
+
+def test_a_session_s_face_embeds_the_maps(client: TestClient, session: str) -> None:
+    assert "albedo" in images_of(client.get(f"/api/sessions/{session}.glb").content)
+    bare = client.get(f"/api/sessions/{session}.glb", params={"textures": 0})
+    assert images_of(bare.content) == ["hair_cards"]
+
+
+def test_the_surface_names_its_maps_and_embeds_none(client: TestClient) -> None:
+    data = client.get("/api/rigs/standard/surface.glb").content
+    extras = glb_json(data)["asset"]["extras"]  # type: ignore[index]
+    assert images_of(data) == ["hair_cards"]
+    for url in extras["textures"].values():
+        answer = client.get(f"/api/rigs/standard/{url}")
+        assert answer.status_code == 200
+        assert answer.headers["Content-Type"] == "image/jpeg"
 
 
 def test_the_surface_is_tagged_by_the_rig(client: TestClient) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import io
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from glb_tools import assert_valid
 from PIL import Image
 
+from engine.gltf import face_to_glb
 from engine.head import Head, Recipe
 from engine.head.recipe import SKIN_TONES, STANDARD
 from engine.head.textures import TEXTURE_NAMES, head_textures
@@ -17,6 +20,8 @@ from engine.head.textures.pigment import typology_angle
 from engine.head.textures.relief import relief
 from engine.head.textures.texels import Texels
 from engine.head.textures.zones import Surface, Zones, zones_of
+from engine.rig import Rig
+from engine.simulator import Simulator
 
 ANGLES = {
     "very_light": (55, 90),
@@ -49,6 +54,16 @@ def test_files(files: dict[str, bytes]) -> None:
     assert Image.open(io.BytesIO(files["albedo.jpg"])).size == (2048, 2048)
     for name in ("normal.jpg", "orm.jpg", "wrinkles.jpg"):
         assert Image.open(io.BytesIO(files[name])).size == (1024, 1024)
+
+
+def test_files_that_embed_them_are_valid(
+    standard_rig: Rig, files: dict[str, bytes], tmp_path: Path
+) -> None:
+    still = Simulator(standard_rig)
+    still.add("face")
+    data = face_to_glb(standard_rig, still.frame("face"), textures=files)
+    assert files["albedo.jpg"] in data
+    assert_valid(tmp_path, face=data)
 
 
 @pytest.mark.parametrize("tone", SKIN_TONES)
