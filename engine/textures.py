@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .cache import Arrays, cached_arrays
@@ -16,10 +18,17 @@ def texture_names(rig: Rig) -> tuple[str, ...]:
     return TEXTURE_NAMES if rig.head.drawn.uvs is not None else ()
 
 
-def textures_of(rig: Rig) -> dict[str, bytes]:
+def textures_of(rig: Rig, *, cancelled: Callable[[], bool] | None = None) -> dict[str, bytes]:
     """Return a rig's textures by file name; the first time takes seconds.
 
     All levels of detail of a person share them.
+
+    Args:
+        rig: Whose textures.
+        cancelled: Asked between the maps whether to stop.
+
+    Raises:
+        Cancelled: `cancelled` said so.
     """
     if not texture_names(rig):
         return {}
@@ -27,7 +36,7 @@ def textures_of(rig: Rig) -> dict[str, bytes]:
     recipe = rig.recipe or STANDARD
 
     def baked() -> Arrays:
-        files = head_textures(full, recipe)
+        files = head_textures(full, recipe, cancelled=cancelled)
         return {name: np.frombuffer(data, dtype=np.uint8) for name, data in files.items()}
 
     key = source_key("textures", recipe, full.drawn.vertices)

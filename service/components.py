@@ -114,6 +114,7 @@ class Components:
             return
         self.stage = "ready"
         self.ready.set()
+        self.rigs.bake(rig)  # The first page is about to ask for them.
         self.clips.start()
 
 

@@ -6,6 +6,7 @@ import hashlib
 import importlib.util
 import os
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -19,6 +20,7 @@ import structlog
 from engine import (
     BUILTIN_RIGS,
     LEVELS,
+    Cancelled,
     EngineError,
     Rig,
     UnknownName,
@@ -31,6 +33,7 @@ from engine import (
 )
 
 from .errors import Busy, NotFound, Unprocessable, refused_by_engine
+from .latest_first import LatestFirst
 from .shelf import Shelf
 from .store import Store
 
@@ -73,6 +76,11 @@ def export_tag(rig: Rig, level: str, *, textured: bool) -> str:
     return f"{tag}-{_engine_stamp()}" if textured and texture_names(rig) else tag
 
 
+def _person_key(rig: Rig) -> str:
+    """Return what names a rig's textures: edits of tissue and muscles leave them as they are."""
+    return repr(rig.recipe) if rig.recipe is not None else rig.id
+
+
 def _named() -> tuple[str, ...]:
     """Return the names of the rigs that come with the engine."""
     return (*BUILTIN_RIGS, *people())
@@ -91,12 +99,14 @@ class Rigs:
         self._rigs: Shelf[Rig] = Shelf(_RIGS_IN_MEMORY, self._pool)
         self._files: Shelf[bytes] = Shelf(_FILES_IN_MEMORY, self._files_pool)
         # A pool of its own: a bake takes seconds, and files must not wait behind it.
-        self._bakery = ThreadPoolExecutor(1, thread_name_prefix="textures")
+        self._bakery = LatestFirst("textures")
+        self._closing = threading.Event()
         self._textures: Shelf[Mapping[str, bytes]] = Shelf(_TEXTURED_IN_MEMORY, self._bakery)
         self._names: dict[str, str] = {}
 
     def close(self) -> None:
-        """Stop the pools."""
+        """Stop the pools; a bake ends with the map that it is at."""
+        self._closing.set()
         self._pool.shutdown(wait=True, cancel_futures=True)
         self._files_pool.shutdown(wait=True, cancel_futures=True)
         self._bakery.shutdown(wait=True, cancel_futures=True)
@@ -210,7 +220,21 @@ class Rigs:
 
     async def textures(self, rig: Rig) -> Mapping[str, bytes]:
         """Return a rig's textures by file name, baked in the background when nobody has."""
-        return await self._textures.get(rig.id, lambda: textures_of(rig))
+        return await self._textures.get(_person_key(rig), lambda: self._baked(rig))
+
+    def bake(self, rig: Rig) -> None:
+        """Have a rig's textures baked in the background: somebody is about to see its face."""
+        if self.texture_names(rig) and not self._closing.is_set():
+            self._textures.begin(_person_key(rig), lambda: self._baked(rig))
+
+    def _baked(self, rig: Rig) -> Mapping[str, bytes]:
+        try:
+            return textures_of(rig, cancelled=self._closing.is_set)
+        except Cancelled:
+            raise
+        except Exception:
+            _LOG.exception("textures could not be baked", rig=rig.id)
+            raise
 
     async def export(
         self, rig: Rig, key: str, make: Callable[[Mapping[str, bytes]], bytes], *, textured: bool

@@ -247,6 +247,7 @@ class Sessions:
         tick = await self._runner.apply(session.id, move)
         session.commands.append(Command(tick, move))
         session.rig = rig
+        self._rigs.bake(rig)
         session.unsaved = session.state_changed = True
         session.tell({"type": "rig", "session": session.id, **session.on_rig()})
         return tick
@@ -363,6 +364,7 @@ class Sessions:
             session.commands.append(Command(view.frame.tick, keyframe))
             hold(session.held, keyframe, session.rig)
         self._live[row.id] = session
+        self._rigs.bake(rig)
         return session
 
 

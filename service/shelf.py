@@ -35,6 +35,11 @@ class Shelf(Generic[Value]):
 
         A failure is handed to everybody who waits, and not kept.
         """
+        # Shielded: one asker who leaves must not cancel it for the others.
+        return await asyncio.shield(self.begin(key, make))
+
+    def begin(self, key: str, make: Callable[[], Value]) -> asyncio.Future[Value]:
+        """Have the value of `key` made in the pool, if nobody has; return its future."""
         task = self._tasks.get(key)
         if task is None:
             task = asyncio.get_running_loop().run_in_executor(self._pool, make)
@@ -42,8 +47,7 @@ class Shelf(Generic[Value]):
             task.add_done_callback(lambda done: self._drop_failed(key, done))
         else:
             self._tasks.move_to_end(key)
-        # Shielded: one asker who leaves must not cancel it for the others.
-        return await asyncio.shield(task)
+        return task
 
     def _keep(self, key: str, task: asyncio.Future[Value]) -> None:
         self._tasks[key] = task

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from ...errors import Cancelled
 from ..head import Head
 from ..parts import eye_texture
 from ..recipe import Recipe
@@ -25,21 +27,35 @@ ALBEDO_SIZE, MAP_SIZE = 2048, 1024
 ALBEDO_QUALITY, NORMAL_QUALITY, MAP_QUALITY = 87, 92, 88
 
 
-def head_textures(head: Head, recipe: Recipe) -> dict[str, bytes]:
+def head_textures(
+    head: Head, recipe: Recipe, *, cancelled: Callable[[], bool] | None = None
+) -> dict[str, bytes]:
     """Return the files of a head's textures by name; none for a head without a map of its skin.
 
     Args:
         head: The person's head.
         recipe: The person.
+        cancelled: Asked between the maps whether to stop.
+
+    Raises:
+        Cancelled: `cancelled` said so.
     """
+
+    def check() -> None:
+        if cancelled is not None and cancelled():
+            raise Cancelled("the bake of textures was stopped")
+
     drawn = head.drawn
     if drawn.uvs is None or drawn.reference is None:
         return {}
     zones = zones_of(Surface.of(drawn))
+    check()
     fine = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, ALBEDO_SIZE)
     colors = srgb_bytes(albedo(fine, zones, drawn.reference, recipe))
+    check()
     texels = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, MAP_SIZE)
     rest, wrinkled = relief(texels, zones, drawn.reference, recipe)
+    check()
     rough = roughness(texels, zones, drawn.reference, rest, recipe)
     packed = np.column_stack([texels.carried(occlusion(head)), rough, np.zeros(len(rough))])
     return {
