@@ -25,7 +25,7 @@ ARCH_BOTTOM_MM = -75.0
 ARCH_FALL = 0.8
 ARCH_HALF_WIDTH_MM = 28.0
 """Half width of the upper dental arch; the cheek beside it touches no teeth."""
-EYE_CLEARANCE_MM = {"E0": 12.45, "E1": 12.75, "E2": 12.75, "E3": 12.75}
+EYE_CLEARANCE_MM = {"E0": 12.45, "E1": 12.75, "E2": 14.4, "E3": 14.2}
 """Least distance from the eye's centre, by lid ring: ball, cornea and the lid's own thickness."""
 LID_SHARE = {"EB": 1.0, "E0": 1.0, "E1": 1.0, "E2": 0.5}
 """Share of the lid's angle that each ring's skull side turns by."""

@@ -71,10 +71,13 @@ def _back_edge(front: FloatArray, spoke: int) -> FloatArray:
 def _lid_back(back_edge: FloatArray, spoke: int) -> FloatArray:
     offset = back_edge - EYE_CENTER
     if spoke in (0, 8):
-        return np.asarray(back_edge + np.array([0.0, 0.0, -6.0]))
+        inwards = {0: 0.0, 8: -0.8}[spoke]
+        return np.asarray(back_edge + np.array([inwards, 0.0, -6.0]))
     across, up = offset[0] * 1.12, offset[1] * 1.9
     depth = LID_BACK_RADIUS**2 - across**2 - up**2
-    return np.asarray(EYE_CENTER + np.array([across, up, np.sqrt(depth) if depth > 4 else 2.0]))
+    back = np.array([across, up, np.sqrt(depth) if depth > 4 else 2.0])
+    # Farther out at the side it would come through the thin skin when that is pulled inwards.
+    return np.asarray(EYE_CENTER + back * min(1.0, LID_BACK_RADIUS / float(np.linalg.norm(back))))
 
 
 def _add_face(half: HalfCage, inner: str, outer: str, spoke: int, region: str) -> None:
