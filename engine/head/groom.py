@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from ..cache import Arrays, cached_arrays
-from .hairline import scalp_cover
 from .head import Head, Part
 from .parts import brows_part, hair_parts, lashes_part
 from .recipe import Recipe
@@ -32,15 +29,7 @@ def groomed(head: Head, level: str, recipe: Recipe) -> Head:
     key = source_key(f"{level}-{[getattr(recipe, field) for field in FIELDS]}")
     arrays = cached_arrays("groom", key, lambda: _to_arrays(_grown(head, recipe)))
     others = [part for part in head.parts if part.name not in GROOMED]
-    drawn = head.drawn
-    cover = scalp_cover(drawn.vertices if drawn.reference is None else drawn.reference, recipe)
-    if "ear" in head.drawn.region_names:
-        cover = np.where(head.drawn.regions == head.drawn.region_names.index("ear"), 0.0, cover)
-    return replace(
-        head,
-        parts=(*others, *_from_arrays(arrays)),
-        drawn=replace(head.drawn, hair=cover),
-    )
+    return replace(head, parts=(*others, *_from_arrays(arrays)))
 
 
 def _grown(head: Head, recipe: Recipe) -> list[Part]:

@@ -13,7 +13,7 @@ from .cage import Cage
 from .geometry import vertex_normals
 from .graded import COARSE_REGIONS, graded_triangles
 from .head import DrawnSurface, Eye, LidContact
-from .paint import Paint
+from .paint import painted
 from .subdivision import Limit
 from .surface_map import surface_map
 from .tissue_surface import symmetric_triangles
@@ -99,7 +99,7 @@ def drawn_surface(
     cage: Cage,
     limit: Limit,
     mesh: SkinMesh,
-    paint: Paint,
+    reference: FloatArray,
     surface_points: IntArray,
     eyes: Sequence[Eye],
 ) -> DrawnSurface:
@@ -109,7 +109,7 @@ def drawn_surface(
         cage: The cage.
         limit: Its limit surface.
         mesh: The level of detail.
-        paint: Colours of the finest level.
+        reference: Positions of the finest level [mm].
         surface_points: Cage index of each tissue point, shape (s,).
         eyes: The eyes to stay clear of.
     """
@@ -119,34 +119,35 @@ def drawn_surface(
     carried = surface_map(limit, mesh.level, mesh.indices[:first], surface_points)
     if mesh.seams is not None:
         carried = sp.csr_array(carried[mesh.seams])
-    return _finished(cage, mesh, paint, carried, eyes)
+    return _finished(cage, mesh, reference, carried, eyes)
 
 
-def tissue_as_drawn(cage: Cage, mesh: SkinMesh, paint: Paint, eyes: Sequence[Eye]) -> DrawnSurface:
+def tissue_as_drawn(cage: Cage, mesh: SkinMesh, eyes: Sequence[Eye]) -> DrawnSurface:
     """Return a tissue surface drawn as it is: its own vertices, moved one to one."""
     identity = sp.csr_array(sp.eye_array(len(mesh.vertices)))
-    return _finished(cage, mesh, paint, identity, eyes)
+    return _finished(cage, mesh, mesh.vertices, identity, eyes)
 
 
 def _finished(
-    cage: Cage, mesh: SkinMesh, paint: Paint, carried: sp.csr_array, eyes: Sequence[Eye]
+    cage: Cage, mesh: SkinMesh, reference: FloatArray, carried: sp.csr_array, eyes: Sequence[Eye]
 ) -> DrawnSurface:
     names = tuple(sorted(set(cage.regions)))
     regions = vertex_regions(cage, mesh, names)
-    return DrawnSurface(
+    bare = DrawnSurface(
         vertices=mesh.vertices,
         normals=vertex_normals(mesh.vertices, mesh.triangles, mesh.seams),
         triangles=mesh.triangles,
-        colors=paint.colors[mesh.indices],
-        hair=paint.hair[mesh.indices],
+        colors=np.zeros_like(mesh.vertices),
+        hair=np.zeros(len(mesh.vertices)),
         regions=regions,
         region_names=names,
         map=carried,
         lids=_lid_contact(cage, mesh, eyes),
         uvs=mesh.uvs,
-        reference=None if mesh.uvs is None else paint.reference[mesh.indices],
+        reference=None if mesh.uvs is None else reference[mesh.indices],
         seams=mesh.seams,
     )
+    return painted(bare)
 
 
 def vertex_regions(cage: Cage, mesh: SkinMesh, names: Sequence[str]) -> IntArray:

@@ -18,7 +18,7 @@ from .groom import groomed
 from .head import DrawnSurface, Eye, Head, Part
 from .identity import moved_arrays, person_from, with_moved
 from .landmarks import landmark_vertices
-from .paint import Paint, painted
+from .paint import painted
 from .parts import hair_parts, head_parts
 from .patches import EYE_CENTER, EYE_RADIUS
 from .recipe import STANDARD, Recipe
@@ -52,14 +52,14 @@ class Sculpture:
         cage: The authored cage.
         points: Its faired points [mm], shape (v, 3).
         limit: The smooth surface through them.
-        paint: Colours of the finest level.
+        finest: Positions of the finest level [mm], shape (d, 3).
         eyes: Left and right eyeball.
     """
 
     cage: Cage
     points: FloatArray
     limit: Limit
-    paint: Paint
+    finest: FloatArray
     eyes: tuple[Eye, Eye]
 
 
@@ -88,9 +88,13 @@ def person_head(recipe: Recipe, level: str = "high") -> Head:
     arrays = cached_arrays(
         "person",
         source_key(f"{level}-{recipe!r}"),
-        lambda: moved_arrays(person_from(reference, recipe)),
+        lambda: moved_arrays(person_from(_in_colors(reference, recipe), recipe)),
     )
     return with_moved(reference, arrays)
+
+
+def _in_colors(head: Head, recipe: Recipe) -> Head:
+    return replace(head, drawn=painted(head.drawn, recipe))
 
 
 @lru_cache(maxsize=len(LEVELS))
@@ -115,7 +119,7 @@ def sculpt() -> Sculpture:
     left = Eye(EYE_CENTER.copy(), EYE_RADIUS)
     right = Eye(EYE_CENTER * [-1.0, 1.0, 1.0], EYE_RADIUS)
     finest = limit.positions(points, 2)
-    return Sculpture(cage, points, limit, painted(cage, limit, finest), (left, right))
+    return Sculpture(cage, points, limit, finest, (left, right))
 
 
 def _cached(name: str, build: Callable[[], Head]) -> Head:
@@ -128,7 +132,7 @@ def _standard(level: str) -> Head:
     cage, limit = sculpture.cage, sculpture.limit
     tissue = tissue_surface(cage, sculpture.points, face_sheet(cage))
     mesh = textured(skin_mesh(cage, limit, sculpture.points, LEVELS[level]), _unwrapped(sculpture))
-    drawn = drawn_surface(cage, limit, mesh, sculpture.paint, tissue.cage_points, sculpture.eyes)
+    drawn = drawn_surface(cage, limit, mesh, sculpture.finest, tissue.cage_points, sculpture.eyes)
     return _assembled("standard", sculpture, tissue, mesh, drawn, hair_parts(drawn))
 
 
@@ -153,7 +157,7 @@ def _paper() -> Head:
         triangles=tissue.triangles,
         cage_faces=tissue.triangle_faces,
     )
-    drawn = tissue_as_drawn(cage, mesh, sculpture.paint, sculpture.eyes)
+    drawn = tissue_as_drawn(cage, mesh, sculpture.eyes)
     return _assembled("paper", sculpture, tissue, mesh, drawn, _skullcap(sculpture, tissue))
 
 
@@ -162,7 +166,7 @@ def _skullcap(sculpture: Sculpture, tissue: TissueSurface) -> list[Part]:
     cage = sculpture.cage
     mesh = skin_mesh(cage, sculpture.limit, sculpture.points, 0)
     whole = drawn_surface(
-        cage, sculpture.limit, mesh, sculpture.paint, tissue.cage_points, sculpture.eyes
+        cage, sculpture.limit, mesh, sculpture.finest, tissue.cage_points, sculpture.eyes
     )
     left_out = whole.triangles[~np.isin(mesh.cage_faces, tissue.triangle_faces)]
     used, renumbered = np.unique(left_out, return_inverse=True)

@@ -29,7 +29,7 @@ def person_from(reference: Head, recipe: Recipe) -> Head:
     drawn is not quite.
 
     Args:
-        reference: The built-in head, with the parts that the recipe asks for.
+        reference: The built-in head, with the parts and the colours that the recipe asks for.
         recipe: The person.
     """
     warp = warp_of(recipe, reference)
@@ -55,6 +55,8 @@ def moved_arrays(person: Head) -> Arrays:
         "teeth": person.teeth,
         "vertices": person.drawn.vertices,
         "normals": person.drawn.normals,
+        "colors": person.drawn.colors,
+        "hair": person.drawn.hair,
         "clearance": person.drawn.lids.clearance,
         "eyes": np.array([eye.center for eye in person.eyes]),
     }
@@ -76,6 +78,8 @@ def with_moved(reference: Head, arrays: Arrays) -> Head:
             drawn,
             vertices=numbers["vertices"],
             normals=numbers["normals"],
+            colors=numbers["colors"],
+            hair=numbers["hair"],
             lids=replace(drawn.lids, clearance=numbers["clearance"]),
         ),
         parts=tuple(
