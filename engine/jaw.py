@@ -15,13 +15,14 @@ class JawHinge:
     """The joint of jaw and skull, and the slide that goes with its turning.
 
     Attributes:
-        center: Joint between the condyles, head frame, mm; below and before the tragus.
-        slide: How far the condyle slides forward per degree of opening, mm. Real jaws slide about
-            0.3 to 0.5 mm a degree at first; with this centre 0.125 gave the cleanest tissue.
+        center: Where the turn's axis crosses the midplane, head frame, mm. It lies in the ramus,
+            some 15 mm under the condyle, which slides down and forward as the jaw turns about it.
+        slide: How far the centre itself slides forward per degree of opening, mm. Real jaws slide
+            about 0.3 to 0.5 mm a degree; less pushes the chin into the throat.
     """
 
-    center: tuple[float, float, float] = (0.0, -12.0, 8.0)
-    slide: float = 0.125
+    center: tuple[float, float, float] = (0.0, -30.0, 4.0)
+    slide: float = 0.35
 
     def transform(
         self, pitch: float, yaw: float = 0.0, thrust: float = 0.0

@@ -55,6 +55,13 @@ ANCHORS = (
 )
 MUCOSA_ANCHOR = 1.0
 LID_CREASE_ANCHOR = 3.0
+THROAT_ANCHOR = {
+    "C7": {9: 0.8, 10: 0.8},
+    "C8": {8: 1.5, 9: 2.5, 10: 2.5},
+    "Q0": {0: 2.5, 1: 2.5, 2: 2.0, 3: 1.5},
+    "Q1": {0: 1.5, 1: 1.5, 2: 1.5, 3: 1.2},
+}
+"""By row and place: the hyoid holds the throat, or the open jaw would push its skin in."""
 
 # Share of the jaw's rotation by row of the cage and place in the row.
 MOUTH_ROWS = ("S1", "S2", "S3", "S4", "M0", "M1", "M2", "M3", "M4")
@@ -63,8 +70,8 @@ JAW_OF_COLUMN = {
     4: {3: 0.02, 4: 0.16, 5: 0.5, 6: 0.86, 7: 1.0, 8: 1.0, 9: 1.0, 10: 1.0},
     5: {3: 0.02, 4: 0.16, 5: 0.5, 6: 0.86, 7: 1.0, 8: 1.0, 9: 1.0, 10: 1.0},
     6: {3: 0.04, 4: 0.2, 5: 0.48, 6: 0.8, 7: 0.95, 8: 0.95, 9: 0.9, 10: 0.9},
-    7: {3: 0.036, 4: 0.18, 5: 0.432, 6: 0.72, 7: 0.855, 8: 0.855, 9: 0.81, 10: 0.81},
-    8: {3: 0.05, 4: 0.2, 5: 0.45, 6: 0.66, 7: 0.72, 8: 0.58, 9: 0.46, 10: 0.42},
+    7: {3: 0.036, 4: 0.18, 5: 0.432, 6: 0.72, 7: 0.855, 8: 0.8, 9: 0.62, 10: 0.55},
+    8: {3: 0.05, 4: 0.2, 5: 0.45, 6: 0.66, 7: 0.6, 8: 0.34, 9: 0.16, 10: 0.1},
 }
 JAW_OF_SIDE = {
     "W12": {1: 0.2, 2: 0.1, 3: 0.04},
@@ -72,10 +79,7 @@ JAW_OF_SIDE = {
     "W14": {1: 0.58, 2: 0.45, 3: 0.26, 4: 0.12, 5: 0.04},
     "W15": {1: 0.68, 2: 0.56, 3: 0.4, 4: 0.2, 5: 0.08},
 }
-JAW_OF_NECK = {
-    "Q0": (0.16, 0.18, 0.26, 0.38, 0.4, 0.34, 0.22, 0.1, 0.03),
-    "Q1": (0.04, 0.05, 0.08, 0.13, 0.14, 0.12, 0.08, 0.03),
-}
+JAW_OF_NECK = {"Q0": (0.0, 0.0, 0.03, 0.08, 0.14, 0.18, 0.14, 0.08, 0.02)}
 
 
 def tissue_depth(points: FloatArray) -> FloatArray:
@@ -94,6 +98,10 @@ def anchor_weight(points: FloatArray, names: Sequence[str]) -> FloatArray:
     rows = np.array([name.split("_")[0] for name in names])
     weight[rows == "S1"] = MUCOSA_ANCHOR
     weight[rows == "E2"] = LID_CREASE_ANCHOR
+    for index, name in enumerate(names):
+        row, _, place = name.partition("_")
+        if row in THROAT_ANCHOR:
+            weight[index] = THROAT_ANCHOR[row].get(int(place), weight[index])
     return weight
 
 

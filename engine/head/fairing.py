@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 
 from ..arrays import FloatArray, IntArray
 from .cage import Cage
-from .patches.ear import ATTACHED
+from .patches.ear import FLUSH
 from .patches.side import STEPS, ear_rim
 from .topology import Topology
 
@@ -23,8 +23,7 @@ TRUST_OF_POINT = {
     **dict.fromkeys((f"W{row}_{step}" for row in range(5, 12) for step in (1, 2)), 0.2),
     **dict.fromkeys((f"W{row}_{step}" for row in range(12, 16) for step in range(1, 8)), 1.0),
     **dict.fromkeys(ear_rim(), 3.0),
-    **dict.fromkeys((f"P{ring}_{spoke}" for ring in (1, 2, 3) for spoke in ATTACHED), 3.0),
-    **dict.fromkeys((f"P4_{spoke}" for spoke in ATTACHED), 3.0),
+    **dict.fromkeys((f"P{ring}_{spoke}" for ring in (1, 2, 3, 4) for spoke in FLUSH), 3.0),
     **dict.fromkeys((f"E4_{spoke}" for spoke in range(7, 14)), 0.25),
     **dict.fromkeys(("E4_12", "E4_13"), 2.0),
     **dict.fromkeys((f"C{column}_{row}" for column in (4, 5) for row in (8, 9, 10)), 2.0),
@@ -32,7 +31,8 @@ TRUST_OF_POINT = {
     **dict.fromkeys((f"C{column}_{row}" for column in (5, 6, 7) for row in range(1, 5)), 0.6),
     **dict.fromkeys(("E4_6", "G4_7", "G4_6", "G3_7", "G3_6", "G2_7"), 0.15),
     **dict.fromkeys((f"C8_{row}" for row in range(1, 6)), 0.15),
-    **dict.fromkeys((f"W{row}_{STEPS}" for row in range(16)), 0.05),
+    **dict.fromkeys((f"W{row}_{STEPS}" for row in range(16)), 0.1),
+    **dict.fromkeys((f"T{row}_0" for row in range(1, 7)), 0.1),
 }
 TRUST_OF_ROW = {
     **dict.fromkeys(("b1", "b2", "b3", "b4", "b5"), 6.0),

@@ -1,17 +1,23 @@
-"""Graded levels of detail: fine where the face lives, coarse on scalp, neck and throat."""
+"""Graded levels of detail: fine where the face lives, coarse on scalp, neck, throat and ear."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from .cage import mirrored_faces
+from .cage import Cage, mirrored_faces
+from .patches.ear import rim_points
 from .subdivision import Level
 from .topology import Topology
 
-COARSE_REGIONS = ("scalp", "neck", "mouth_inner", "submental")
+COARSE_REGIONS = ("scalp", "neck", "mouth_inner", "submental", "ear")
+
+
+def drawn_fine(cage: Cage) -> BoolArray:
+    """Return which of the cage's faces are drawn fine, shape (f,): the face's and the ear's rim."""
+    on_rim = np.isin(np.array(cage.names), rim_points())
+    of_rim = (on_rim[cage.faces] | (cage.faces < 0)).all(axis=1)
+    return np.asarray(~np.isin(np.array(cage.regions), COARSE_REGIONS) | of_rim)
 
 
 def graded_triangles(
@@ -47,7 +53,8 @@ def graded_triangles(
         _split(topology.faces[plain], coarse.parents[plain], positions),
     ]
     for face in np.flatnonzero(stitched & left):
-        fan = _best_fan(_outline(topology, int(face), edge_is_fine), positions)
+        outline = np.array(_outline(topology, int(face), edge_is_fine))
+        fan = _best_fan(outline, outline >= topology.vertex_count, positions)
         pieces.append((fan, np.full(len(fan), coarse.parents[face])))
     triangles = np.vstack([piece[0] for piece in pieces])
     parents = np.concatenate([piece[1] for piece in pieces])
@@ -85,11 +92,15 @@ def _outline(topology: Topology, face: int, edge_is_fine: BoolArray) -> list[int
     return outline
 
 
-def _best_fan(outline: Sequence[int], positions: FloatArray) -> IntArray:
-    """Return the fan over an outline whose smallest angle is the largest."""
+def _best_fan(outline: IntArray, is_middle: BoolArray, positions: FloatArray) -> IntArray:
+    """Return the fan over an outline whose smallest angle is the largest.
+
+    None has a triangle of an edge's ends and its middle, which would have no area on the textures.
+    """
     size = len(outline)
-    starts = np.arange(size)
-    ring = np.array(outline)[(starts[:, None] + starts) % size]
+    steps = np.arange(size)
+    starts = np.flatnonzero(~np.roll(is_middle, 1) & ~np.roll(is_middle, -1))
+    ring = outline[(starts[:, None] + steps) % size]
     fans = np.stack([ring[:, [0, k, k + 1]] for k in range(1, size - 1)], axis=1)
     worst = smallest_angles(positions[fans]).min(axis=1)
     return np.asarray(fans[int(np.argmax(worst))])

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from ..arrays import FloatArray, IntArray
 from .cage import Cage
 from .geometry import vertex_normals
-from .graded import COARSE_REGIONS, graded_triangles
+from .graded import drawn_fine, graded_triangles
 from .head import DrawnSurface, Eye, LidContact
 from .paint import painted
 from .subdivision import Limit
@@ -20,7 +20,7 @@ from .tissue_surface import symmetric_triangles
 from .uv import CHARTS, Unwrap
 
 LEVELS = {"low": 0, "medium": 1, "high": 2}
-"""Refinements of the cage where the face lives; scalp, neck and throat have one fewer."""
+"""Refinements of the cage where the face lives; scalp, neck, throat and ear bowl have one fewer."""
 
 # Height that the drawn lids keep over ball and cornea, mm; the first that names a vertex counts.
 LID_CLEARANCE = {"lid_margin": 0.22, "eyelid": 0.5, "orbital": 0.6, "lid_inner": 0.12}
@@ -64,9 +64,8 @@ def skin_mesh(cage: Cage, limit: Limit, points: FloatArray, level: int) -> SkinM
         triangles = symmetric_triangles(cage.faces, points, cage.mirror)
         left = np.repeat(np.arange(len(cage.faces)), (cage.faces >= 0).sum(axis=1) - 2)
         return SkinMesh(0, np.arange(len(points)), vertices, triangles, left)
-    is_fine = ~np.isin(np.array(cage.regions), COARSE_REGIONS)
     triangles, faces = graded_triangles(
-        limit.levels[level - 1], limit.levels[level], vertices, is_fine
+        limit.levels[level - 1], limit.levels[level], vertices, drawn_fine(cage)
     )
     used, renumbered = np.unique(triangles, return_inverse=True)
     return SkinMesh(level, used, vertices[used], renumbered.reshape(-1, 3), faces)

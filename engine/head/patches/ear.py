@@ -24,6 +24,10 @@ LAST_RING = 10
 FLOOR = "P11"
 """Points within the last ring: a grid like the hole's, row by row, each from front to back."""
 
+RIM_RINGS = (4, 5, 6)
+RIM_SPOKES = range(2, 13)
+"""The ear's free edge and crest, which show as an outline."""
+
 ORIGIN = np.array([72.0, -14.0, 0.0])
 """The notch over the tragus, mm."""
 TILT = np.radians(17)
@@ -33,8 +37,8 @@ FLARE = np.radians(22)
 CANT = np.radians(8)
 """Its top stands out and its lobe in by this."""
 
-ATTACHED = (0, 1, 14, 15, 16, 17, 18, 19)
-"""Spokes on which the ear rises from the head and has no back."""
+FLUSH = (16, 17, 18, 19)
+"""Spokes before the canal, on which the ear rises from the head without a back."""
 
 
 def add_ear(half: HalfCage, authored: Mapping[str, Sequence[Sequence[float]]]) -> None:
@@ -56,6 +60,11 @@ def add_ear(half: HalfCage, authored: Mapping[str, Sequence[Sequence[float]]]) -
             following = (spoke + 1) % SPOKES
             half.face("ear", outer[spoke], outer[following], inner[following], inner[spoke])
     _add_floor(half, names[-1])
+
+
+def rim_points() -> list[str]:
+    """Return the names of the points on the ear's free edge and crest."""
+    return [f"P{ring}_{spoke}" for ring in RIM_RINGS for spoke in RIM_SPOKES]
 
 
 def _add_floor(half: HalfCage, ring: Sequence[str]) -> None:

@@ -28,7 +28,7 @@ EAR_STEPS = (3, 7)
 """First and last row and step of the grid at the ear's hole."""
 LANES = ((78, 115), (76, 112), (74, 110), (73, 108), (72.5, 106))
 """Direction in which each row above the ear passes its columns, degrees from the front."""
-LIFTS = (0.0, 2.0, 4.5, 8.0, 12.0)
+LIFTS = (0.0, 2.5, 6.0, 9.2, 10.0)
 """How far each row above the ear rises over it, mm."""
 
 # The skull's horizontal sections: superellipses about an axis, their half width and back by height.
@@ -39,8 +39,8 @@ SECTION_HEIGHTS = (
     -200, -150, -125, -96, -83, -71, -60, -50, -41, -32, -22, -12, -2, 9, 22, 36, 54, 74, 95, 110,
 )  # fmt: skip
 BACKS = (
-    -62, -60, -60, -61.5, -64, -68, -73, -79, -84.5, -89.5, -93.5, -96.5, -98.5, -99.5, -99.5, -98,
-    -92.5, -81, -58, -30,
+    -62, -60, -60, -60.5, -62, -65, -69.5, -75, -81, -87, -92.5, -96.5, -99, -100.2, -100.5, -99,
+    -93.5, -82, -58, -30,
 )  # fmt: skip
 HALF_WIDTHS = (
     66, 54, 51, 52, 54.5, 57.5, 60.5, 63, 65.2, 66.8, 68.2, 69.6, 71.4, 73, 73.8, 73.7, 71.2, 63,
