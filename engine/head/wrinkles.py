@@ -1,8 +1,9 @@
 """Wrinkles of expression: where skin is pressed together, measured between points of the tissue.
 
-A gauge is a pair of tissue points; what it loses of its length, times its gain, is the strength of
-the wrinkles around it. Pairs and gains were chosen by settling the standard rig under each action
-unit: a site reaches about 1 under its own units and stays near 0 under the others.
+A gauge is a pair of tissue points; what it loses of its length beyond the slack that skin takes up
+without a fold, times its gain, is the strength of the wrinkles around it. Pairs, slack and gains
+were chosen by settling the standard rig under each action unit: a site reaches about 1 under its
+own units and stays at 0 under the others.
 """
 
 from __future__ import annotations
@@ -40,8 +41,9 @@ class Gauge(NamedTuple):
         site: Where it tells of wrinkles.
         first: Name of one end.
         second: Name of the other.
-        gain: Strength per share of length lost.
-        weight: Its share of the site; negative where it takes back what another sees wrongly.
+        gain: Strength per share of length lost beyond the slack.
+        slack: Share of its length that skin gives way before it folds.
+        weight: Its share of the site.
         column: Where across the site it is felt most, mm from the midline; None for all of it.
     """
 
@@ -49,6 +51,7 @@ class Gauge(NamedTuple):
     first: str
     second: str
     gain: float
+    slack: float = 0.0
     weight: float = 1.0
     column: float | None = None
 
@@ -61,25 +64,25 @@ SITES = {
     "crows_feet": Site(61, 0, 19, 20, behind=8.0),
     "lower_lid": Site(33, -12, 18, 8),
     "nasolabial": Site(29, -58, 15, 30),
+    "nasolabial_upper": Site(26, -53, 13, 24),
     "chin": Site(0, -99, 24, 16),
 }
 
 GAUGES = (
-    Gauge("forehead", "G4_0", "G2_0", 9.0, column=0),
-    Gauge("forehead", "G4_2.L", "G2_1.L", 9.2, column=14),
-    Gauge("forehead", "G4_3.L", "G2_3.L", 12.0, column=27),
-    Gauge("forehead", "G4_5.L", "G2_5.L", 14.0, column=41),
-    Gauge("forehead", "T1_6.L", "G3_7.L", 7.0, column=56),
-    Gauge("glabella", "b1_2.L", "b1_2.R", 7.0),
-    Gauge("nasal_root", "b1_0", "b3_0", 9.0),
-    Gauge("nasal_root", "E0_14.L", "E3_11.L", 4.8, weight=-0.32),
-    Gauge("nose_side", "A6.L", "b2_2.L", 11.5),
-    Gauge("nose_side", "b1_2.L", "b1_2.R", 7.0, weight=-0.25),
-    Gauge("crows_feet", "W7_1.L", "E2_8.L", 17.0, weight=0.5),
-    Gauge("crows_feet", "EB_10.L", "E3_9.L", 5.2, weight=0.5),
-    Gauge("lower_lid", "E0_14.L", "E3_11.L", 4.8),
-    Gauge("nasolabial", "C5_3.L", "M4_4.L", 4.8),
-    Gauge("chin", "M1_10", "M0_1.L", 15.0),
+    Gauge("forehead", "G4_0", "G2_0", 10.5, slack=0.016, column=0),
+    Gauge("forehead", "G4_2.L", "G2_1.L", 10.5, slack=0.016, column=14),
+    Gauge("forehead", "G4_3.L", "G2_3.L", 13.0, slack=0.014, column=27),
+    Gauge("forehead", "G4_5.L", "G2_5.L", 18.0, slack=0.018, column=41),
+    Gauge("forehead", "T1_6.L", "G2_7.L", 12.0, slack=0.02, column=56),
+    Gauge("glabella", "b1_2.L", "b1_2.R", 11.0, slack=0.03),
+    Gauge("nasal_root", "b1_0", "b3_0", 17.0, slack=0.045),
+    Gauge("nose_side", "C4_1.L", "A7.L", 16.0, slack=0.021),
+    Gauge("crows_feet", "W7_1.L", "E2_8.L", 20.0, slack=0.004, weight=0.5),
+    Gauge("crows_feet", "EB_10.L", "E3_9.L", 6.4, slack=0.018, weight=0.5),
+    Gauge("lower_lid", "E3_10.L", "E0_14.L", 10.0, slack=0.01),
+    Gauge("nasolabial", "M4_4.L", "C4_3.L", 5.6, slack=0.017),
+    Gauge("nasolabial_upper", "E3_15.L", "A6.L", 13.0, slack=0.009, weight=0.8),
+    Gauge("chin", "M4_10", "S1_2.L", 11.5, slack=0.046),
 )
 
 
@@ -91,7 +94,7 @@ class Wrinkles:
         sites: Site of each gauge, with its side, length g.
         first: Tissue point at one end, shape (g,).
         second: At the other, shape (g,).
-        rest: Length at rest [mm], shape (g,).
+        rest: Length below which skin folds, a little less than at rest [mm], shape (g,).
         gain: Strength per share of length lost, shape (g,).
         spread: Strength at drawn vertices from that of gauges, sparse (d, g).
     """
@@ -125,13 +128,14 @@ def wrinkles_of(head: Head) -> Wrinkles | None:
     reference = head.drawn.reference
     if reference is None:
         return None
-    names, first, second, gain, columns = [], [], [], [], []
+    names, first, second, gain, taut, columns = [], [], [], [], [], []
     for gauge in GAUGES:
         for side in _sides(gauge):
             names.append(gauge.site + side)
             first.append(head.point(_on(gauge.first, side)))
             second.append(head.point(_on(gauge.second, side)))
             gain.append(gauge.gain)
+            taut.append(1 - gauge.slack)
             columns.append(_weights(reference, gauge, side))
     spread = np.column_stack(columns)
     spread[np.abs(spread) < _LEAST] = 0
@@ -140,7 +144,7 @@ def wrinkles_of(head: Head) -> Wrinkles | None:
         sites=tuple(names),
         first=np.array(first),
         second=np.array(second),
-        rest=np.linalg.norm(ends[0] - ends[1], axis=1),
+        rest=np.array(taut) * np.linalg.norm(ends[0] - ends[1], axis=1),
         gain=np.array(gain),
         spread=sp.csr_array(spread),
     )

@@ -26,9 +26,9 @@ export function createLights(): Group {
   const fill = new DirectionalLight(0xe6ebf7, 0.25);
   fill.position.set(0.36, 0.02, 0.3);
   // From so far behind, these touch only edges, and no shadow of theirs is missed.
-  const rimLeft = new DirectionalLight(0xe8efff, 1.5);
+  const rimLeft = new DirectionalLight(0xeef2fa, 0.9);
   rimLeft.position.set(0.26, 0.16, -0.36);
-  const rimRight = new DirectionalLight(0xffecd8, 1);
+  const rimRight = new DirectionalLight(0xffecd8, 0.7);
   rimRight.position.set(-0.28, 0.12, -0.36);
   lights.add(
     key,

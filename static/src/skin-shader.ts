@@ -117,14 +117,18 @@ if (mapsShown < 1.0) {
 }
 #ifdef SKIN_MAPS
 {
-  vec2 fine = texture2D(poreMap, vSkinUv * PORE_TILES).xy * 2.0 - 1.0;
-  // Wet skin, as of the lips, has no pores.
-  vec2 tilt = relief.xy / max(relief.z, 0.2) + PORE_DEPTH * smoothstep(0.3, 0.5, orm.g) * fine * vec2(1.0, -1.0);
   // The frame of the texture coordinates, from how they change across the picture (Mikkelsen's surface gradients).
   vec3 across = dFdx(-vViewPosition);
   vec3 down = dFdy(-vViewPosition);
   vec2 uvAcross = dFdx(vSkinUv);
   vec2 uvDown = dFdy(vSkinUv);
+  // Ears and neck have fewer texels a millimetre than the face, and take the tile as often again; the scalp none.
+  float stretch = sqrt((dot(across, across) + dot(down, down)) / max(dot(uvAcross, uvAcross) + dot(uvDown, uvDown), 1e-12));
+  float tiles = stretch > 0.53 ? 2.0 * PORE_TILES : PORE_TILES;
+  vec2 fine = texture2D(poreMap, vSkinUv * tiles).xy * 2.0 - 1.0;
+  // Wet skin, as of the lips, has no pores.
+  float pored = PORE_DEPTH * smoothstep(0.3, 0.5, orm.g) * smoothstep(1.15, 0.95, stretch);
+  vec2 tilt = relief.xy / max(relief.z, 0.2) + pored * fine * vec2(1.0, -1.0);
   vec3 downPerp = cross(down, skinSmooth);
   vec3 acrossPerp = cross(skinSmooth, across);
   vec3 tangent = downPerp * uvAcross.x + acrossPerp * uvDown.x;

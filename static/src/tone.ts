@@ -6,7 +6,7 @@ import { replaced } from './shader-edit';
 
 /** AgX as it comes is flat, meant to be graded; these are the numbers of its look. */
 const CONTRAST = 1.16;
-const SATURATION = 1.22;
+const SATURATION = 1.34;
 const EXPOSURE = 1.42;
 
 /** AgX' way back from its own primaries, before which its look belongs. */

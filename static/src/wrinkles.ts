@@ -5,7 +5,7 @@ export interface Gauges {
   /** Streamed points at the ends of each gauge. */
   first: ArrayLike<number>;
   second: ArrayLike<number>;
-  /** Length at rest [m]. */
+  /** Length below which skin folds, a little less than at rest [m]. */
   rest: ArrayLike<number>;
   /** Weight per share of length lost. */
   gain: ArrayLike<number>;

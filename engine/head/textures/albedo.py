@@ -167,11 +167,11 @@ def _colored(
         m9 = value_noise(x / 9.5, y / 9.5, z / 9.5, seed + 6)
         m4 = value_noise(x / 3.9, y / 3.9, z / 3.9, seed + 7)
         m1 = value_noise(x / 1.7, y / 1.7, z / 1.7, seed + 8)
-        patches = 0.065 * n14 + 0.08 * n6 + 0.075 * n3 + 0.06 * n1
+        patches = 0.075 * n14 + 0.10 * n6 + 0.10 * n3 + 0.085 * n1
         flush = max(blood, 0.0)
-        red = blood * (1 + 0.5 * n6 + 0.45 * n3) + patches * (0.65 + 1.8 * flush) + 0.022 * nf
+        red = blood * (1 + 0.5 * n6 + 0.45 * n3) + patches * (0.65 + 1.8 * flush) + 0.05 * nf
         brown = melanin * (1 + 0.5 * dark) + (0.022 + 0.028 * dark + 0.02 * age) * m9
-        brown += (0.024 + 0.02 * dark) * m4 + 0.02 * m1 + 0.014 * nf
+        brown += (0.024 + 0.02 * dark) * m4 + 0.03 * m1 + 0.026 * nf
         gold = yellow * (1 - 0.6 * dark) + 0.02 * m9
 
         # Broken little vessels on cheeks and wings of the nose, with age and light skin.
@@ -183,8 +183,8 @@ def _colored(
         # Under the eyes the skin is thin: blood shows violet, and a vein or two.
         if violet > 0.01:
             thin = violet * (0.75 + 0.35 * age) * (1 + 0.35 * n3)
-            brown += thin * (0.075 + 0.22 * dark)
-            red += thin * 0.11
+            brown += thin * (0.10 + 0.22 * dark)
+            red += thin * 0.15
             gold -= thin * 0.10
         # A vein at the temple.
         if x * x > 2500 and y > 5 and front > 0.1:
@@ -219,19 +219,19 @@ def _colored(
         # Pores: a dark dot each, a little ruddy round it.
         if pored > 0.05:
             pore = spot_noise(x / 1.02, y / 1.02, z / 1.02, 0.6, 0.13, 0.30, seed + 26)
-            brown += 0.17 * pored * _step(0.0, 0.9, pore)
+            brown += 0.25 * pored * _step(0.0, 0.9, pore)
 
         # Lips: a soft, slightly ragged border, fine upright lines, darker outside corners.
-        lip = _step(-0.75, 0.95, lip_depth + 0.28 * n1 + 0.16 * nf)
+        lip = _step(-1.25, 1.35, lip_depth + 0.35 * n1 + 0.22 * nf)
         if lip > 0.0:
             # Lines run from the mouth's opening outwards: noise stretched along y and z.
             bend = 0.5 * n3
             line = value_noise((x + bend) / 0.85, y / 5.5, z / 5.5, seed + 31)
             fine = value_noise((x + bend) / 0.4, y / 3.2, z / 3.2, seed + 32)
-            lines = 0.09 * line + 0.06 * fine
+            lines = 0.13 * line + 0.10 * fine
             rim = _step(2.6, 0.2, lip_depth)
-            lip_red = 0.50 + 0.12 * (1 - upper) + lines - 0.10 * rim + 0.06 * (1 - sex)
-            lip_brown = 0.13 + 0.06 * upper + 0.4 * lines + 0.05 * age
+            lip_red = 0.56 + 0.10 * (1 - upper) + lines + 0.10 * n3 - 0.14 * rim + 0.06 * (1 - sex)
+            lip_brown = 0.22 + 0.09 * upper + 0.5 * lines + 0.06 * n6 + 0.05 * age
             # On dark skin the upper lip and the rim are browner, the lower lip rosy within.
             lip_red *= 1 - 0.25 * dark * upper
             lip_brown += dark * (0.16 * upper + 0.20 * rim - 0.16 * (1 - upper) * (1 - rim))
@@ -246,13 +246,13 @@ def _colored(
         if beard > 0.01 and stubble > 0.01:
             even = beard * (1 + 0.25 * n3 + 0.18 * n6)
             shade = stubble * min(max(even, 0.0), 1.0)
-            brown += 0.20 * shade * (1 - 0.3 * dark)
-            gold -= 0.22 * shade * (1 - dark)
+            brown += 0.34 * shade * (1 - 0.3 * dark)
+            gold -= 0.30 * shade * (1 - dark)
             red -= 0.07 * shade
             tip = spot_noise(
                 x / 0.95, y / 0.95, z / 0.95, 0.95 * min(shade * 2.2, 1.0), 0.12, 0.25, seed + 41
             )
-            cover = 0.62 * _step(0.0, 0.8, tip) * min(1.0, 0.35 + stubble)
+            cover = 0.72 * _step(0.0, 0.7, tip) * min(1.0, 0.35 + stubble)
 
         for c in range(3):
             density = brown * pigments[0, c] + red * pigments[1, c] + gold * pigments[2, c]

@@ -24,7 +24,7 @@ from .zones import Surface, zones_of
 TEXTURE_NAMES = ("albedo.jpg", "normal.jpg", "orm.jpg", "wrinkles.jpg", "eye.jpg")
 """Files of a head's textures, as they are served."""
 ALBEDO_SIZE, MAP_SIZE = 2048, 1024
-ALBEDO_QUALITY, NORMAL_QUALITY, MAP_QUALITY = 87, 92, 88
+ALBEDO_QUALITY, NORMAL_QUALITY, MAP_QUALITY = 90, 92, 88
 
 
 def head_textures(

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from numba import njit
 
 from ...arrays import Float32Array, FloatArray
-from ..noise import cell_edges, spot_noise, value_noise
+from ..noise import cell_edges, hashed, spot_noise, value_noise
 from ..recipe import Recipe
 from .texels import Texels
 from .zones import Zones
@@ -46,7 +46,7 @@ def relief(
     folds = _folds(at, table, seed)
     age = float(np.clip((recipe.age - OLD[0]) / (OLD[1] - OLD[0]), 0, 1))
     rest = fine + STAYING * age**1.2 * folds
-    return rest, np.asarray(fine + np.float32(0.85 + 0.3 * age) * folds)
+    return rest, np.asarray(fine + np.float32(0.7 + 0.55 * age) * folds)
 
 
 def normals(texels: Texels, heights: Float32Array) -> npt.NDArray[np.uint8]:
@@ -104,6 +104,19 @@ def _groove(noise: float, spacing: float, width: float) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
+def _crease(gap: float, width: float) -> float:
+    """Return the profile of a crease between two rolls of skin: sharp below, rounded above."""
+    apart = abs(gap) / width
+    return float(0.62 * np.exp(-apart * apart) + 0.42 * np.exp(-apart / 3.2))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _ramp(low: float, high: float, value: float) -> float:
+    share = min(max((value - low) / (high - low), 0.0), 1.0)
+    return share * share * (3 - 2 * share)
+
+
+@njit(cache=True, nogil=True, inline="always")
 def _spot(x: float, y: float, cx: float, cy: float, width: float, height: float) -> float:
     u, v = (x - cx) / width, (y - cy) / height
     return float(np.exp(-((u * u + v * v) ** 2)))
@@ -148,47 +161,67 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         w6 = value_noise(side / 7, y / 7, z / 7, seed + 61)
         w2 = value_noise(side / 2.3, y / 2.3, z / 2.3, seed + 62)
         depth = 0.0
-        # Forehead: long lines across that rise over the brows, meet and part.
+        left = 0 if side > 0 else 40
+        # Forehead: lines across that rise over the brows, break off, fork and fade out.
         mask = _spot(x, y, 0.0, 46.0, 56.0, 26.0)
         if mask > 0.01:
-            rise = y - 3.0 * np.sin((x - 8.0) / 17.0) + 1.1 * w6
-            long = value_noise(side / 46, rise / 7.8 + 0.35, z / 90, seed + 63)
-            minor = value_noise(side / 24, rise / 4.2, z / 90, seed + 64)
-            depth += mask * (0.62 * _groove(long, 7.8, 0.95) + 0.22 * _groove(minor, 4.2, 0.55))
-        # Glabella: upright lines between the brows, the outer pair the deepest.
-        mask = _spot(x, y, 0.0, 17.0, 15.0, 15.0)
+            rise = y - 2.6 * np.sin((x - 8.0) / 17.0) + 0.5 * w6
+            for k in range(6):
+                line = 26.0 + 8.3 * k + 4.0 * hashed(k, 1, 0, seed)
+                gap = rise - line - 2.0 * value_noise(side / 21, 3.1 * k, 0.5, seed + 63)
+                if abs(gap) > 9:
+                    continue
+                whole = 0.62 + 0.95 * value_noise(side / 24, 5.3 * k, 1.5, seed + 64)
+                whole = min(max(whole, 0.0), 1.0) * (0.6 + 0.4 * hashed(k, 2, 0, seed))
+                fork = 3.4 * value_noise(side / 17, 7.7 * k, 2.5, seed + 75)
+                depth += mask * 0.60 * whole * _crease(gap, 0.60)
+                if fork > 0.2:
+                    depth += mask * 0.30 * min(whole, fork) * _crease(gap - fork, 0.42)
+        # Glabella: upright lines between the brows, one deeper than the other, and lesser ones.
+        mask = _spot(x, y, 0.0, 17.0, 15.0, 17.0)
         if mask > 0.01:
-            lean = x - 0.10 * (y - 12.0) + 0.6 * w6
-            pair = np.exp(-(((lean - 7.2) / 0.85) ** 2)) - 0.3 * np.exp(
-                -(((lean - 9.3) / 1.3) ** 2)
-            )
-            more = value_noise((side + 0.8 * w6) / 4.2, y / 26, z / 60, seed + 65)
-            depth += mask * (0.75 * pair + 0.26 * _groove(more, 4.2, 0.6))
+            for k in range(3):
+                own = hashed(k + left, 3, 0, seed)
+                middle = (6.3, 10.2, 2.2)[k] + 1.6 * own
+                share = (0.80, 0.30, 0.22)[k] * (0.6 + 0.4 * hashed(k + left, 4, 0, seed))
+                top, low = 24.0 + 8 * own - 4 * k, 8.0 - 4 * own + 2 * k
+                ends = _ramp(low - 3, low + 4, y) * _ramp(top + 4, top - 5, y)
+                gap = x - middle - 0.13 * (y - 14.0) + 0.006 * (y - 16.0) ** 2 + 0.45 * w6
+                depth += mask * share * ends * _crease(gap, 0.75 - 0.1 * k)
         # Root of the nose: lines across, and on its sides slanting ones (AU 9).
-        mask = _spot(x, y, 0.0, 3.5, 11.0, 8.5)
+        mask = _spot(x, y, 0.0, 3.5, 11.5, 9.5)
         if mask > 0.01:
-            cross = value_noise(
-                side / 16, (y - 0.10 * x * x / 4 + 0.5 * w6) / 3.6, z / 60, seed + 66
-            )
-            depth += mask * 0.5 * _groove(cross, 3.6, 0.6)
-        mask = _spot(x, y, 10.0, -12.0, 6.0, 11.0)
+            for k in range(3):
+                own = hashed(k, 5, 0, seed)
+                gap = y - (3.6, -1.2, 8.4)[k] - 1.5 * own + 0.018 * x * x + 0.4 * w6
+                depth += mask * (0.5, 0.3, 0.22)[k] * _crease(gap, 0.62)
+        mask = _spot(x, y, 10.0, -11.0, 6.5, 12.0)
         if mask > 0.01:
-            slant = value_noise((x + y) / 14, (y - 0.9 * x + 0.4 * w6) / 3.0, z / 60, seed + 67)
-            depth += mask * 0.28 * _groove(slant, 3.0, 0.5)
-        # Crow's feet: rays from the corner of the eye.
+            for k in range(4):
+                own = hashed(k + left, 6, 0, seed)
+                gap = 0.75 * (y - 0.85 * (x - 9.0) + 3.0 + 3.4 * k + 1.5 * own) + 0.35 * w6
+                depth += mask * (0.16 + 0.16 * own) * _crease(gap, 0.48)
+        # Crow's feet: rays from the corner of the eye, each of its own length, some forked.
         ray_x, ray_y = x - 43.0, y - 0.5
         reach = np.sqrt(ray_x * ray_x + ray_y * ray_y + (z - 73.0) ** 2 * 0.35)
-        if x > 44 and reach < 32:
+        if x > 44 and reach < 34:
             angle = np.arctan2(ray_y, ray_x + 0.25 * abs(z - 73.0))
-            fan = min(max((reach - 4.5) / 5.0, 0.0), 1.0) * np.exp(-(((reach - 13) / 11.5) ** 2))
-            fan *= np.exp(-(((angle + 0.08) / 0.85) ** 4))
-            bent = angle + 0.006 * reach * w6
-            rays = value_noise(bent * 3.4, reach / 26, 0.5 + (0.0 if side > 0 else 7.0), seed + 68)
-            fine = value_noise(bent * 6.5, reach / 16, 2.5 + (0.0 if side > 0 else 7.0), seed + 69)
-            apart = max(reach, 4.0) / 3.4
-            depth += fan * (
-                0.5 * _groove(rays, apart, 0.75) + 0.18 * _groove(fine, apart / 2, 0.45)
-            )
+            for k in range(6):
+                own = hashed(k + left, 7, 0, seed)
+                other = hashed(k + left, 8, 0, seed)
+                bend = 1 + 0.014 * (reach - 9.0)
+                aim = (0.66 - 0.27 * k + 0.16 * (own - 0.5)) * bend
+                gap = (angle - aim) * reach + 0.5 * w6 + 0.2 * w2
+                if abs(gap) > 6:
+                    continue
+                long = 13.0 + 11.0 * other - 1.2 * abs(k - 2.5)
+                fan = _ramp(3.5 + 2 * own, 8.0 + 2 * own, reach) * np.exp(-((reach / long) ** 4))
+                share = 0.24 + 0.24 * own
+                depth += fan * share * _crease(gap, 0.46 + 0.012 * reach)
+                if other > 0.45:
+                    fork = 0.30 * max(reach - 10.0, 0.0) * (1 if own > 0.5 else -1)
+                    apart = min(abs(fork), 1.0)
+                    depth += 0.55 * apart * fan * share * _crease(gap - fork, 0.42)
         # Lower lid: fine lines below the lashes that follow it outwards, and the tear trough.
         mask = _spot(x, y, 32.0, -10.5, 17.0, 6.0)
         if mask > 0.01:
@@ -207,8 +240,8 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
                 * ends
                 * (np.exp(-((gap / 1.15) ** 2)) - 0.35 * np.exp(-(((gap - 3.0) / 2.0) ** 2)))
             )
-            beside = value_noise(gap / 4.4 + 0.5, share * 5, 3.0, seed + 71)
-            depth += 0.22 * ends * np.exp(-((gap / 7.0) ** 2)) * _groove(beside, 4.4, 0.6)
+            beside = gap + 3.6 + 1.6 * hashed(left, 9, 0, seed) + 3.0 * (share - 0.8)
+            depth += 0.30 * _ramp(0.35, 0.75, share) * ends * _crease(beside, 0.6)
         gap, share = _along(x, y, _MARIONETTE)
         depth += 0.4 * np.exp(-(((gap + 0.3 * w6) / 1.0) ** 2)) * np.sin(np.pi * share) ** 0.7
         # Chin: the fold above it, and the dimples of a knotted mentalis.
@@ -216,16 +249,21 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         depth += 0.45 * np.exp(-(((gap + 0.3 * w6) / 1.5) ** 2)) * (1 - share) ** 0.5
         mask = _spot(x, y, 0.0, -103.0, 17.0, 11.0)
         if mask > 0.01:
-            knots = cell_edges(side / 4.3 + 0.18 * w2, y / 4.3, z / 4.3, seed + 72)
-            depth += mask * 0.42 * (np.exp(-((knots / 0.22) ** 2)) - 0.25)
+            knot = spot_noise(side / 4.4, y / 4.4, z / 4.4, 0.95, 0.34, 0.62, seed + 72)
+            depth += mask * (0.52 * _ramp(0.0, 1.0, knot + 0.15 * w2) - 0.1)
         # Lines that purse the lips.
         if lip_depth < 0.5 and x < 26:
             mask = np.exp(-(((lip_depth + 2.5) / 3.2) ** 2)) * (1 - (x / 27) ** 4)
             purse = value_noise((side + 0.5 * w6) / 3.4, y / 30, z / 60, seed + 73)
             depth += mask * 0.30 * _groove(purse, 3.4, 0.5)
         # Rings round the neck.
-        if y < -118:
-            rings = value_noise(side / 90, (y + 1.6 * w6 + 0.03 * z) / 15, z / 90, seed + 74)
-            depth += min(1.0, (-118 - y) / 8) * 0.42 * _groove(rings, 15, 1.0)
+        if y < -116:
+            for k in range(4):
+                line = -122.0 - 13.5 * k - 5.0 * hashed(k, 10, 0, seed)
+                sway = 2.5 * value_noise(side / 26, 4.4 * k, 0.5, seed + 74)
+                gap = y - line - 0.10 * (z - 40.0) - sway
+                whole = 0.55 + 0.8 * value_noise(side / 30, 6.1 * k, 1.5, seed + 77)
+                if abs(gap) < 10:
+                    depth += 0.40 * min(max(whole, 0.0), 1.0) * _crease(gap, 0.9)
         found[n] = -depth * (1 - min(max(scalp, 0.0), 1.0)) * (1 - hidden)
     return found

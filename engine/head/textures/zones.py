@@ -146,27 +146,29 @@ def zones_of(surface: Surface) -> Zones:
     neck = smoothstep(-112, -135, y)
     beard = _beard(surface, x, y, z)
     return Zones(
-        blood=0.17 * cheek
-        + 0.30 * tip
-        + 0.22 * ala
-        + 0.13 * chin
-        + 0.30 * ears
-        + 0.10 * upper_lid
+        blood=0.23 * cheek
+        + 0.32 * tip
+        + 0.28 * ala
+        + 0.16 * chin
+        + 0.17 * ears
+        + 0.16 * upper_lid
+        + 0.07 * spot(22, -40, 9, 12)
         + 0.05 * spot(0, 15, 14, 10)
         + 0.06 * neck * smoothstep(0, 50, z)
-        - 0.05 * spot(0, 52, 44, 22),
-        melanin=0.06 * spot(31, -12, 16, 7)
+        - 0.07 * spot(0, 52, 44, 22),
+        melanin=0.08 * spot(31, -12, 16, 7)
         + 0.10 * upper_lid
-        + 0.05 * spot(0, 60, 60, 16)
+        + 0.08 * spot(0, 62, 60, 16)
         + 0.07 * spot(0, -93, 16, 5)
         + 0.05 * spot(0, -78, 34, 24)
         + 0.06 * ala
-        + 0.03 * spot(62, 10, 16, 26)
+        + 0.07 * spot(64, 8, 16, 34)
+        + 0.05 * spot(60, -60, 18, 26)
         - 0.05 * spot(38, -26, 18, 9)
         + 0.05 * neck,
-        yellow=0.10 * spot(0, 52, 48, 26) + 0.05 * spot(0, -62, 22, 8) + 0.06 * spot(31, 14, 18, 6),
+        yellow=0.13 * spot(0, 50, 48, 26) + 0.05 * spot(0, -62, 22, 8) + 0.06 * spot(31, 14, 18, 6),
         violet=np.clip(under_eye, 0, 1),
-        lip=surface.depth(*LIPS, *LIPS_INSIDE, "mouth_inner"),
+        lip=_softened(surface, surface.depth(*LIPS, *LIPS_INSIDE, "mouth_inner")),
         upper=np.asarray(smoothstep(-72.6, -70.6, y)),
         mouth=np.clip(surface.mask("mouth_inner", blur=1) + 0.8 * surface.mask(*LIPS_INSIDE), 0, 1),
         nostril=surface.mask("nostril", blur=1),
@@ -194,6 +196,14 @@ def zones_of(surface: Surface) -> Zones:
         ),
         front=front,
     )  # fmt: skip
+
+
+def _softened(surface: Surface, depth: FloatArray) -> FloatArray:
+    """Return a depth whose border no longer steps from triangle to triangle."""
+    found = depth
+    for _ in range(3):
+        found = 0.4 * found + 0.6 * (surface.around @ found)
+    return np.asarray(np.where(np.abs(depth) < 8, found, depth))
 
 
 def _beard(surface: Surface, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
