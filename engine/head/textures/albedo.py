@@ -233,7 +233,7 @@ def _colored(
             lip_red = 0.56 + 0.10 * (1 - upper) + lines + 0.10 * n3 - 0.14 * rim + 0.06 * (1 - sex)
             lip_brown = 0.22 + 0.09 * upper + 0.5 * lines + 0.06 * n6 + 0.05 * age
             # On dark skin the upper lip and the rim are browner, the lower lip rosy within.
-            lip_red *= 1 - 0.25 * dark * upper
+            lip_red *= 1 - dark * (0.22 + 0.2 * upper)
             lip_brown += dark * (0.16 * upper + 0.20 * rim - 0.16 * (1 - upper) * (1 - rim))
             lip_red *= 1 - 0.18 * age
             red += lip * (lip_red - 0.8 * red)

@@ -20,7 +20,7 @@ from .zones import Zones
 
 OLD = (28.0, 75.0)
 """Ages between which lines stay when the face is at rest."""
-STAYING = 0.6
+STAYING = 0.8
 """Share of a wrinkle's depth that stays on the oldest face."""
 
 _ZONES = ("lip", "beard", "pores", "front", "mouth", "violet", "scalp", "nostril")
