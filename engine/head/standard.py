@@ -19,7 +19,7 @@ from .head import DrawnSurface, Eye, Head, Part
 from .identity import moved_arrays, person_from, with_moved
 from .landmarks import landmark_vertices
 from .paint import painted
-from .parts import hair_parts, head_parts
+from .parts import eyes_of, hair_parts, head_parts
 from .patches import EYE_CENTER, EYE_RADIUS
 from .recipe import STANDARD, Recipe
 from .skin import LEVELS, SkinMesh, drawn_surface, skin_mesh, textured, tissue_as_drawn
@@ -90,7 +90,8 @@ def person_head(recipe: Recipe, level: str = "high") -> Head:
         source_key(f"{level}-{recipe!r}"),
         lambda: moved_arrays(person_from(_in_colors(reference, recipe), recipe)),
     )
-    return with_moved(reference, arrays)
+    person = with_moved(reference, arrays)
+    return replace(person, parts=eyes_of(person.parts, recipe))
 
 
 def _in_colors(head: Head, recipe: Recipe) -> Head:

@@ -71,9 +71,9 @@ vec3 lidShade(vec3 inEye) {
   float corner = mix(lidCorners.y, lidCorners.w, s);
   float under = mix(corner, lidMiddles.x, bow) - p.y;
   float over = p.y - mix(corner, lidMiddles.y, bow);
-  float shade = mix(0.22, 1.0, smoothstep(-0.5, 3.4, under)) * mix(0.74, 1.0, smoothstep(1.0, 7.0, under));
-  shade *= mix(0.60, 1.0, smoothstep(-0.6, 1.5, over));
-  shade *= mix(0.62, 1.0, smoothstep(0.0, 0.16, s) * smoothstep(1.0, 0.84, s));
+  float shade = mix(0.07, 1.0, smoothstep(-0.7, 2.9, under)) * mix(0.62, 1.0, smoothstep(0.5, 6.5, under));
+  shade *= mix(0.45, 1.0, smoothstep(-0.6, 1.7, over));
+  shade *= mix(0.48, 1.0, smoothstep(-0.02, 0.22, s) * smoothstep(1.02, 0.74, s));
   // What light comes back from the lids is red.
   return pow(vec3(shade), vec3(0.82, 1.04, 1.1));
 }
@@ -87,6 +87,13 @@ const SCLERA = /* glsl */ `
   diffuseColor.rgb = mix(diffuseColor.rgb, mapped, eyeMapped());
   diffuseColor.rgb *= lidShade(vInEye);
 }
+`;
+
+/** The lamps' own points would be sparks beside the boxes that the ball mirrors. */
+const SOFT_SPARKS = /* glsl */ `
+#include <lights_fragment_end>
+clearcoatSpecularDirect *= 0.3;
+clearcoatSpecularIndirect *= lidShade(vInEye).g;
 `;
 
 /** Light wanders in the sclera, so that it has no sharp terminator: a flatter ball looks like that. */
@@ -106,6 +113,7 @@ export function makeEyeball(program: Program, setting: EyeSetting): void {
     ['#include <common>', `#include <common>\nuniform mat3 normalMatrix;\n${COMMON}`],
     ['#include <color_fragment>', SCLERA],
     ['#include <normal_fragment_maps>', SOFT_BALL],
+    ['#include <lights_fragment_end>', SOFT_SPARKS],
   ]);
   softenShadows(program);
 }
@@ -139,10 +147,10 @@ float irisCover;
   slope /= 0.06 + dot(iris, weigh);
   float outside = smoothstep(1.75, 2.1, inside);
   // A dish: the side away from the light catches what the cornea gathers.
-  irisNormal = normalize(vec3(-at / IRIS_RADIUS * 0.62 - 0.10 * outside * slope, 1.0));
+  irisNormal = normalize(vec3(-at / IRIS_RADIUS * 0.8 - 0.10 * outside * slope, 1.0));
   iris *= 1.0 - 0.75 * smoothstep(5.0, 6.3, r);
-  irisCover = eyeMapped() * (1.0 - smoothstep(5.35, 6.15, length(vInEye.xy)));
-  diffuseColor.rgb = 0.72 * iris * lidShade(vInEye);
+  irisCover = eyeMapped() * (1.0 - smoothstep(5.2, 6.25, length(vInEye.xy)));
+  diffuseColor.rgb = 0.66 * iris * lidShade(vInEye);
 }
 `;
 
@@ -161,8 +169,10 @@ const HIGHLIGHT = /* glsl */ `
 #include <lights_fragment_end>
 {
   float open = lidShade(vInEye).g;
-  clearcoatSpecularIndirect *= open * open;
-  clearcoatSpecularDirect *= smoothstep(0.25, 0.6, open);
+  // The key's box is what a photographer calls the catch light; the lamp's own point would double it.
+  float lit = dot(clearcoatSpecularIndirect, vec3(0.33));
+  clearcoatSpecularIndirect *= open * open * mix(0.7, 2.6, smoothstep(0.05, 0.13, lit));
+  clearcoatSpecularDirect *= 0.2 * smoothstep(0.25, 0.6, open);
 }
 `;
 

@@ -23,7 +23,7 @@ import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { EyeSetting } from './eye-shader';
 import { createMaterial } from './materials';
 import { MovingNormals } from './normals';
-import { skinForm } from './skin-form';
+import { mouthWalls, skinForm } from './skin-form';
 import { strandSides } from './strand-sides';
 import { strandTangents } from './strand-tangents';
 import { Strands } from './strands';
@@ -234,6 +234,8 @@ export class Face {
       extras.region_names ?? [],
     );
     skin.geometry.setAttribute('skinForm', new Float32BufferAttribute(form, 2));
+    const walls = mouthWalls(regions, extras.region_names ?? [], form.length / 2);
+    skin.geometry.setAttribute('mouthWall', new Float32BufferAttribute(walls, 1));
     this.wrinkles = gauges === null ? null : new Wrinkles(gauges);
     this.wrinkle = dynamic(
       skin.geometry,

@@ -5,7 +5,9 @@ import { AdditiveBlending, DoubleSide, MeshPhysicalMaterial, Vector2 } from 'thr
 import type { EyeSetting } from './eye-shader';
 import { makeCornea, makeEyeball } from './eye-shader';
 import { makeHair } from './hair-shader';
+import { makeCornerFlesh, makeOral } from './mouth-shader';
 import { createPores } from './pores';
+import type { Program } from './shader-edit';
 import { makeSkin } from './skin-shader';
 import { softenShadows } from './soft-shadows';
 import { FaceMaps } from './textures';
@@ -13,7 +15,7 @@ import { FaceMaps } from './textures';
 /** Where a surface lies, as far as it matters to its light. */
 export interface Setting {
   vertexColors: boolean;
-  /** In the mouth, where the studio's soft boxes are not mirrored. */
+  /** In the mouth, where less of the studio is mirrored the deeper it lies. */
   inMouth: boolean;
   /** The picture that came with the surface; hair with one is made of cards, without one of strands. */
   map: Texture | null;
@@ -32,29 +34,39 @@ export function createMaterial(
   kind: string,
   { vertexColors, inMouth, map, neckFade, maps, eye }: Setting,
 ): Material {
-  const envMapIntensity = inMouth ? 0.25 : 1;
   switch (kind) {
     case 'eye':
       return eyeball(vertexColors, eye);
     case 'cornea':
       return eye === null ? clearCornea() : cornea(eye);
     case 'wet':
-      return withSoftShadows({
-        vertexColors,
-        roughness: inMouth ? 0.42 : 0.3,
-        specularIntensity: inMouth ? 0.35 : 0.6,
-        clearcoat: inMouth ? 0.25 : 0.5,
-        clearcoatRoughness: inMouth ? 0.22 : 0.16,
-        envMapIntensity,
-      });
+      return inMouth
+        ? wet(makeOral, {
+            vertexColors,
+            roughness: 0.42,
+            specularIntensity: 0.4,
+            clearcoat: 0.45,
+            clearcoatRoughness: 0.18,
+            envMapIntensity: 0.4,
+          })
+        : wet(makeCornerFlesh, {
+            vertexColors,
+            roughness: 0.42,
+            specularIntensity: 0.35,
+            clearcoat: 0.22,
+            clearcoatRoughness: 0.14,
+            envMapIntensity: 0.45,
+          });
     case 'teeth':
-      return withSoftShadows({
+      return wet(makeOral, {
         vertexColors,
-        roughness: 0.3,
+        roughness: 0.38,
         // Enamel is denser than skin, and wet.
         ior: 1.62,
-        specularIntensity: inMouth ? 0.45 : 0.55,
-        envMapIntensity,
+        specularIntensity: 0.4,
+        clearcoat: 0.6,
+        clearcoatRoughness: 0.09,
+        envMapIntensity: 0.5,
       });
     case 'hair':
       return map === null ? strands(vertexColors) : cards(vertexColors, map);
@@ -63,9 +75,10 @@ export function createMaterial(
   }
 }
 
-function withSoftShadows(look: MeshPhysicalMaterialParameters): Material {
+/** See mouth-shader.ts. */
+function wet(make: (program: Program) => void, look: MeshPhysicalMaterialParameters): Material {
   const material = new MeshPhysicalMaterial(look);
-  material.onBeforeCompile = softenShadows;
+  material.onBeforeCompile = make;
   return material;
 }
 

@@ -47,6 +47,20 @@ export function skinForm(
   return form;
 }
 
+/** 1 on the walls of the mouth behind the lips, 0 elsewhere: a number for each vertex. */
+export function mouthWalls(
+  regionOf: ArrayLike<number> | null,
+  regionNames: readonly string[],
+  count: number,
+): Float32Array {
+  const wall = regionNames.indexOf('mouth_inner');
+  const walls = new Float32Array(count);
+  if (regionOf !== null && wall >= 0)
+    for (let vertex = 0; vertex < count; vertex++)
+      walls[vertex] = Number(regionOf[vertex] === wall);
+  return walls;
+}
+
 /** Thin skin bends: an ear's rim and folds do, the skin around the ear does not. */
 function edgeShare(bend: number): number {
   return Math.min(1, Math.max(0, (bend - FLAT) / (SHARP - FLAT)));

@@ -152,9 +152,17 @@ material.specularF90 *= gloss;
 /** How often the tile of pores lies side by side on the map, and how steep its slopes are. */
 const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.8\n';
 
+/** An open mouth draws its walls across the teeth, which no tissue holds off: what lies in it is drawn before them. */
+const BEHIND_TEETH = /* glsl */ `
+if (mouthWall > 0.0) {
+  vec4 behind = projectionMatrix * (mvPosition - vec4(0.0, 0.0, 0.03 * mouthWall, 0.0));
+  gl_Position.z = behind.z / behind.w * gl_Position.w;
+}
+`;
+
 /**
- * Change the program of a physical material into skin. Needs attributes `restPosition` [m], `_hair`, `skinForm` of
- * skin-form.ts, and with the define SKIN_MAPS `uv` and `wrinkle`.
+ * Change the program of a physical material into skin. Needs attributes `restPosition` [m], `_hair`, `mouthWall`, `skinForm`
+ * of skin-form.ts, and with the define SKIN_MAPS `uv` and `wrinkle`.
  * @throws Error when three's shader no longer has a line that is replaced here.
  */
 export function makeSkin(program: Program, uniforms: SkinUniforms): void {
@@ -166,6 +174,7 @@ export function makeSkin(program: Program, uniforms: SkinUniforms): void {
 attribute vec3 restPosition;
 attribute float _hair;
 attribute vec2 skinForm;
+attribute float mouthWall;
 varying vec3 vRest;
 varying float vHair;
 varying vec2 vForm;
@@ -186,6 +195,7 @@ vSkinUv = uv;
 vWrinkle = wrinkle;
 #endif`,
     ],
+    ['#include <project_vertex>', `#include <project_vertex>\n${BEHIND_TEETH}`],
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
     ['#include <common>', `${TILES}#include <common>\n${NOISE}`],

@@ -5,6 +5,7 @@ import { AgXToneMapping, ShaderChunk, ShaderLib } from 'three';
 import { describe, expect, it } from 'vitest';
 import type { Program } from '../src/shader-edit';
 import { EyeSetting, makeCornea, makeEyeball } from '../src/eye-shader';
+import { makeOral } from '../src/mouth-shader';
 import { makeSkin } from '../src/skin-shader';
 import { exposeSkin } from '../src/tone';
 
@@ -31,6 +32,14 @@ describe('the skin s program', () => {
     expect(program.fragmentShader).toContain('skinSmooth, 0.65 * skinBare');
     expect(program.uniforms).toHaveProperty('poreMap');
   });
+
+  it('draws the walls of the mouth behind what lies in it', () => {
+    const program = physical();
+    const value = { value: null };
+    const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
+    makeSkin(program, { neckFade: value, mapsShown: value, poreMap: value, ...maps });
+    expect(program.vertexShader).toContain('gl_Position.z = behind.z');
+  });
 });
 
 describe('the eye s programs', () => {
@@ -49,6 +58,14 @@ describe('the eye s programs', () => {
     makeEyeball(program, setting);
     expect(program.fragmentShader).toContain('lidShade(vInEye)');
     expect(setting.lids.value.z).toBe(-1);
+  });
+});
+
+describe('the mouth s program', () => {
+  it('mirrors nothing where no light comes', () => {
+    const program = physical();
+    makeOral(program);
+    expect(program.fragmentShader).toContain('clearcoatSpecularDirect *= reached');
   });
 });
 

@@ -2,7 +2,7 @@
 
 import { SphereGeometry } from 'three';
 import { describe, expect, it } from 'vitest';
-import { skinForm } from '../src/skin-form';
+import { mouthWalls, skinForm } from '../src/skin-form';
 
 describe('skinForm', () => {
   it('finds a sphere s curvature, and its sign', () => {
@@ -34,5 +34,12 @@ describe('skinForm', () => {
     const regions = new Uint16Array(positions.length / 3);
     expect(skinForm(surface, regions, ['ear'])[1]).toBeCloseTo(0.8, 3);
     expect(skinForm(surface, regions, ['cheek'])[1]).toBe(0);
+  });
+});
+
+describe('mouthWalls', () => {
+  it('tells the walls of the mouth from the lips', () => {
+    expect([...mouthWalls([0, 1, 2], ['lower_lip', 'mouth_inner', 'chin'], 3)]).toEqual([0, 1, 0]);
+    expect([...mouthWalls(null, [], 2)]).toEqual([0, 0]);
   });
 });

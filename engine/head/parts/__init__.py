@@ -7,7 +7,7 @@ from ..head import DrawnSurface, Part
 from ..recipe import STANDARD, Recipe
 from .brows import brow_line, brows_part
 from .caruncle import caruncle_parts
-from .eyes import eye_parts
+from .eyes import eye_parts, eyes_of
 from .gums import gum_parts
 from .hair import hair_parts
 from .iris import eye_texture
@@ -45,6 +45,7 @@ __all__ = [
     "brow_line",
     "brows_part",
     "eye_texture",
+    "eyes_of",
     "hair_parts",
     "head_parts",
     "lashes_part",

@@ -20,6 +20,10 @@ PLICA_THICKNESS = 0.2
 """How far the fold by the ball stands over it, mm."""
 SINK = 0.5
 """How deep under the ball's surface the flesh ends, mm."""
+OUTER_FILLET = 1.7
+"""How widely the outer corner's bed runs into the ball, mm."""
+OUTER_RISE = 0.6
+"""How much farther forward that bed lies towards the ball, mm."""
 
 # Linear RGB.
 CARUNCLE = np.array([0.52, 0.205, 0.165])
@@ -86,21 +90,30 @@ def _inner_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
 
 
 def _outer_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
-    """Return a hollow sheet from under the ball to behind the outer corner."""
+    """Return a hollow sheet from under the ball to behind the outer corner.
+
+    It leaves the ball in a fillet and in its colour, as the conjunctiva does that covers both.
+    """
     corner, above, below = lid_edge[8], lid_edge[7], lid_edge[9]
     middle_y = 0.5 * (above[1] + below[1])
-    start = EYE_CENTER[0] + 10.6
-    along = np.linspace(0.0, 1.3, COLUMNS // 2)[:, None]
+    start = EYE_CENTER[0] + 8.6
+    along = np.linspace(0.0, 1.25, COLUMNS)[:, None]
     across = np.linspace(-1, 1, ROWS)[None, :]
     x = start + (corner[0] - start) * along + 0 * across
-    height = across * (4.2 - 2.0 * along)
+    height = across * (5.2 - 2.8 * along.clip(0, 1))
     y = middle_y + (corner[1] - middle_y) * along.clip(0, 1) + height
-    foot = EYE_CENTER[2] + np.sqrt(EYE_RADIUS**2 - 10.6**2) - SINK
-    depth = foot + (corner[2] - 1.5 - foot) * along.clip(0, 1) - 2.2 * np.maximum(0, along - 1)
-    depth = depth - 0.16 * height**2 + 0.35 * np.sin(np.pi * along.clip(0, 1))
-    to_bed = smoothstep(-0.15, 1.0, along + 0.07 * np.abs(height))[..., None]
+    off = (x - EYE_CENTER[0]) ** 2 + (y - EYE_CENTER[1]) ** 2
+    ball = EYE_CENTER[2] + np.sqrt(np.maximum(EYE_RADIUS**2 - off, 0.0))
+    ball = ball - 3.0 * np.maximum(0.0, np.sqrt(off) - EYE_RADIUS)
+    bed = corner[2] - 1.2 + OUTER_RISE * (1 - along) - 2.2 * np.maximum(0, along - 1)
+    bed = bed - 0.06 * height**2
+    ball_under = ball - SINK * smoothstep(0.55, 0.0, along)
+    depth = 0.5 * (bed + ball_under + np.sqrt((bed - ball_under) ** 2 + OUTER_FILLET**2))
+    depth = depth - 0.5 * OUTER_FILLET * smoothstep(0.45, 0.0, along)
+    to_bed = smoothstep(0.45, 1.1, along + 0.03 * np.abs(height))[..., None]
     colors = SCLERA_CORNER + (OUTER_BED - SCLERA_CORNER) * to_bed
-    return _sheet(x, y, depth), 0.72 * colors.reshape(-1, 3)
+    shade = 1 - 0.45 * smoothstep(0.3, 1.05, along + 0 * across)[..., None]
+    return _sheet(x, y, depth), (shade * colors).reshape(-1, 3)
 
 
 def _sheet(x: FloatArray, y: FloatArray, z: FloatArray) -> Mesh:

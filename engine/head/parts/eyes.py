@@ -6,13 +6,17 @@ of 12, its top 3 mm before the pupil.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ..geometry import Mesh, grid_triangles, vertex_normals, without_slivers
 from ..head import Part
 from ..patches import EYE_CENTER, EYE_RADIUS
-from ..recipe import Recipe
+from ..recipe import STANDARD, Recipe
 from .iris import IRIS_RADIUS, PUPIL_RADIUS, SIZE, eye_colors, eye_uvs
 
 SEGMENTS = 44
@@ -31,6 +35,8 @@ CORNEA_REACH = 6.5
 """Radius at which the cornea's shell ends on the sclera, mm."""
 CORNEA_LIFT = 0.03
 """Of the shell over the ball, so that neither flickers through the other, mm."""
+SEEN = ("eye_color", "age", "seed")
+"""What of a recipe an eye's colours tell of."""
 BACK_ANGLE = 2.2
 """Angle from the eye's axis beyond which the ball is left open, radians."""
 
@@ -73,6 +79,24 @@ def eye_parts(recipe: Recipe) -> list[Part]:
             )
         )
     return parts
+
+
+def eyes_of(parts: Sequence[Part], recipe: Recipe) -> tuple[Part, ...]:
+    """Return a head's parts with the eyeballs in a person's colours.
+
+    They show until the person's map is there, and wherever maps are left out.
+    """
+    left, right = _ball_colors(replace(STANDARD, **{name: getattr(recipe, name) for name in SEEN}))
+    own = {"eye.L": left, "eye.R": right}
+    return tuple(
+        replace(part, colors=own[part.name]) if part.name in own else part for part in parts
+    )
+
+
+@lru_cache(maxsize=16)
+def _ball_colors(recipe: Recipe) -> tuple[FloatArray, FloatArray]:
+    left, right = (part.colors for part in eye_parts(recipe) if part.material == "eye")
+    return left, right
 
 
 def _eyeball() -> tuple[Mesh, FloatArray]:

@@ -23,7 +23,7 @@ PAPILLA = 0.47
 
 # Across the fold: place from the margin towards the root and how far it stands off the crown, mm.
 LABIAL = (
-    (-0.9, -0.55), (-0.05, 0.02), (0.30, 0.38), (1.1, 0.62), (2.4, 0.62), (5.0, 0.7),
+    (-0.9, -0.55), (-0.05, 0.02), (0.30, 0.38), (1.1, 0.46), (2.4, 0.30), (5.0, -0.7),
 )  # fmt: skip
 LINGUAL = ((9.0, 0.0), (5.0, 0.9), (2.0, 0.62), (0.5, 0.40), (-0.05, 0.02), (-0.9, -0.55))
 
@@ -90,7 +90,7 @@ def _gum(arch: Arch) -> tuple[Mesh, FloatArray]:
             bulge = 0.18 * (1 - papilla) * np.exp(-(((rootward - 4.0) / 2.5) ** 2))
             if side > 0:
                 deep = face * swell + bulge * (swell > 0)
-                deep = deep - (0.0 if arch.up > 0 else 0.35 * max(0.0, rootward - 2.0))
+                deep = deep - (0.0 if arch.up > 0 else 0.5 * max(0.0, rootward - 1.0))
             else:
                 behind = thick + (0.2 * rootward if rootward > 3 else 0.0)
                 deep = -behind - face * swell - 0.8 * np.clip(rootward - 5.0, 0, None)

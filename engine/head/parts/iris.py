@@ -26,7 +26,7 @@ IRIS_RADIUS = 5.85
 """Visible iris, 11.7 mm across (Snell and Lemp: 11.7 mm horizontally)."""
 PUPIL_RADIUS = 1.75
 """Of a pupil in a lit room, mm."""
-LIMBUS_WIDTH = 0.7
+LIMBUS_WIDTH = 0.95
 """Over which the iris fades into the sclera, mm."""
 MAP_POWER = 0.75
 """Radius on the map = 0.5 (angle / 90 degrees) ** this: the iris gets more of it than its share."""
@@ -54,24 +54,24 @@ class IrisColors:
 
 
 IRISES: Mapping[str, IrisColors] = {
-    "blue": IrisColors((98, 113, 128), (132, 128, 110), (32, 42, 56), 0.20, 1.0, 4),
-    "gray": IrisColors((112, 117, 120), (132, 126, 110), (42, 48, 54), 0.18, 0.95, 3),
-    "green": IrisColors((100, 108, 82), (132, 110, 70), (38, 44, 38), 0.30, 0.95, 7),
-    "hazel": IrisColors((96, 92, 66), (122, 84, 47), (38, 35, 28), 0.40, 0.9, 9),
-    "amber": IrisColors((122, 87, 50), (132, 89, 47), (58, 37, 21), 0.45, 0.8, 5),
-    "brown": IrisColors((86, 57, 37), (97, 61, 36), (38, 24, 17), 0.50, 0.7, 3),
-    "dark_brown": IrisColors((62, 39, 27), (66, 40, 26), (28, 18, 14), 0.50, 0.5, 0),
+    "blue": IrisColors((84, 92, 101), (104, 101, 91), (30, 37, 46), 0.20, 1.0, 4),
+    "gray": IrisColors((94, 99, 102), (108, 104, 94), (38, 43, 48), 0.18, 0.95, 3),
+    "green": IrisColors((84, 90, 73), (108, 94, 68), (34, 39, 35), 0.30, 0.95, 7),
+    "hazel": IrisColors((80, 78, 62), (100, 77, 52), (34, 32, 27), 0.40, 0.9, 9),
+    "amber": IrisColors((106, 81, 54), (114, 83, 52), (52, 36, 24), 0.45, 0.8, 5),
+    "brown": IrisColors((74, 54, 41), (82, 58, 41), (34, 23, 18), 0.50, 0.7, 3),
+    "dark_brown": IrisColors((50, 37, 30), (53, 38, 30), (25, 19, 16), 0.50, 0.5, 0),
 }
 RUFF = (38.0, 22.0, 15.0)
 """The pigment sheet turns forward round the pupil's edge (sRGB)."""
-FLECK = (96.0, 58.0, 28.0)
+FLECK = (84.0, 55.0, 32.0)
 
 # Linear RGB.
 PUPIL = np.array([0.0035, 0.003, 0.003])
-SCLERA = np.array([0.54, 0.49, 0.435])
-SCLERA_AGED = np.array([0.52, 0.44, 0.345])
-SCLERA_CORNER = np.array([0.43, 0.27, 0.215])
-SCLERA_NEAR_LIMBUS = np.array([0.455, 0.435, 0.41])
+SCLERA = np.array([0.47, 0.41, 0.36])
+SCLERA_AGED = np.array([0.46, 0.385, 0.305])
+SCLERA_CORNER = np.array([0.39, 0.245, 0.20])
+SCLERA_NEAR_LIMBUS = np.array([0.40, 0.38, 0.36])
 VESSEL = np.array([0.42, 0.115, 0.09])
 VESSELS = 46
 
@@ -203,7 +203,7 @@ def _sclera(
     color = color + (SCLERA_NEAR_LIMBUS - color) * (0.6 * near)[..., None]
     cloud = _ringed(noise, around, angle / np.pi * 2, 9, 5) - 0.5
     color = color * (1 + cloud[..., None] * np.array([0.02, 0.05, 0.09]))
-    to_corner = smoothstep(0.62, 1.22, angle) * (0.55 + 0.45 * np.abs(np.cos(around)))
+    to_corner = smoothstep(0.58, 1.06, angle) * (0.55 + 0.45 * np.abs(np.cos(around)))
     color = color + (SCLERA_CORNER - color) * to_corner[..., None]
     vessels = _vessels(noise) * smoothstep(limbus + 0.02, limbus + 0.22, angle)
     return np.asarray(color + (VESSEL - color) * (vessels * (0.75 + 0.25 * years))[..., None])
@@ -218,7 +218,7 @@ def _vessels(noise: np.random.Generator) -> FloatArray:
         _grow(cover, noise, start, 0.5, noise.uniform(0.35, 1.0), depth=0)
     fine = gaussian_filter(cover, 0.55)
     blurred = gaussian_filter(cover, 3.5)
-    return np.asarray((0.85 * fine + 0.75 * blurred).clip(0, 0.62))
+    return np.asarray((1.05 * fine + 0.85 * blurred).clip(0, 0.62))
 
 
 def _grow(

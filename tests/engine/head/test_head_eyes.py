@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from engine.head import Head, Part
+from engine.head import Head, Part, person_head
 from engine.head.parts import eye_texture
 from engine.head.parts.iris import IRIS_RADIUS, IRISES, PUPIL_RADIUS, eye_uvs
 from engine.head.recipe import EYE_COLORS, Recipe
@@ -117,3 +117,28 @@ def test_the_tear_line_lies_between_lid_and_ball(head: Head) -> None:
     height = np.linalg.norm(strip.vertices - centers, axis=1) - head.eyes[0].radius
     assert height.min() > -0.01
     assert np.linalg.norm(strip.vertices - head.drawn.vertices[strip.roots], axis=1).max() < 2
+
+
+def test_a_persons_eyes_have_their_colour_before_any_map_is_there() -> None:
+    shown = {}
+    for color in ("blue", "brown"):
+        ball = part(person_head(Recipe(eye_color=color), "low"), "eye.L")
+        assert ball.uvs is not None
+        across = np.hypot(*(ball.uvs - 0.5).T)
+        ring = (across > 0.14) & (across < 0.2)
+        shown[color] = ball.colors[ring].mean(axis=0)
+    assert shown["blue"][2] > shown["blue"][0]
+    assert shown["brown"][0] > 1.5 * shown["brown"][2]
+
+
+def test_the_outer_corners_flesh_leaves_the_ball_smoothly(head: Head) -> None:
+    """Where it comes out of the ball it lies nearly along it, so that no edge shows."""
+    eye = head.eyes[0]
+    flesh = part(head, "caruncle.L")
+    offset = flesh.vertices - eye.center
+    height = np.linalg.norm(offset, axis=1) - eye.radius
+    outer = (offset[:, 0] > 8) & (np.abs(offset[:, 1]) < 3)
+    leaving = outer & (height > -0.15) & (height < 0.3)
+    assert leaving.any()
+    along = np.einsum("ij,ij->i", flesh.normals, offset) / np.linalg.norm(offset, axis=1)
+    assert along[leaving].min() > np.cos(np.radians(42))
