@@ -10,9 +10,9 @@ from .parts import brows_part, hair_parts, lashes_part
 from .recipe import Recipe
 from .storage import source_key
 
-GROOMED = ("brows", "lashes", "hair", "flyaways")
+GROOMED = ("brows", "lashes", "hairline", "baby_hairs", "hair", "flyaways")
 """Parts of a head that are its hair; those that ride the skin come first."""
-RIDING = GROOMED[:2]
+RIDING = GROOMED[:4]
 FIELDS = ("sex", "age", "hair_style", "hair_color", "grayness", "seed")
 """What of a recipe hair depends on."""
 _ARRAYS = ("vertices", "normals", "triangles", "colors", "roots", "uvs")

@@ -41,7 +41,12 @@ def scalp_color(recipe: Recipe = STANDARD) -> FloatArray:
 
 
 def strand_colors(
-    recipe: Recipe, count: int, noise: np.random.Generator, *, spread: float = 1.0
+    recipe: Recipe,
+    count: int,
+    noise: np.random.Generator,
+    *,
+    spread: float = 1.0,
+    tone: float = 0.20,
 ) -> FloatArray:
     """Return the colours of `count` strands, shape (count, 3).
 
@@ -50,19 +55,20 @@ def strand_colors(
         count: How many.
         noise: Where the differences come from.
         spread: 1 for single hairs, which are grey or not; less for clumps, which mix.
+        tone: How much hairs differ in brightness.
     """
     natural = np.array(NATURAL[recipe.hair_color])
-    tone = np.exp(noise.normal(0, 0.20, count))[:, None]
+    shade = np.exp(noise.normal(0, tone, count))[:, None]
     warmth = 1 + np.outer(noise.normal(0, 0.06, count), [1.0, 0.1, -0.9])
     single = (noise.uniform(size=count) < recipe.grayness).astype(float)
     grey = recipe.grayness + spread * (single - recipe.grayness)
-    pigmented = natural * tone * warmth
-    return np.asarray(pigmented + grey[:, None] * (GRAY * tone**0.5 - pigmented))
+    pigmented = natural * shade * warmth
+    return np.asarray(pigmented + grey[:, None] * (GRAY * shade**0.5 - pigmented))
 
 
 def brow_color(recipe: Recipe = STANDARD) -> FloatArray:
     """Return the natural colour of brows, shape (3,): darker than fair hair."""
     natural = np.array(NATURAL[recipe.hair_color])
     light = float(natural.mean())
-    darker = np.interp(light, (0.02, 0.06, 0.3), (1.0, 0.8, DARKEST_BROW))
+    darker = np.interp(light, (0.015, 0.035, 0.06, 0.3), (1.0, 0.75, 0.65, DARKEST_BROW))
     return np.asarray(np.maximum(natural * darker, NATURAL["black"]))

@@ -32,8 +32,10 @@ RECEDED_OUTLINE = np.array([
 ], dtype=float)  # fmt: skip
 FADE = (-5.0, 9.0)
 """Distance inside the outline [mm] over which hair grows from none to full."""
-COVER_FADE = (-2.0, 11.0)
+COVER_FADE = (-3.0, 8.0)
 """The same for the scalp's shade, which lies deeper in, so that no edge of paint shows."""
+NAPE_TAPER = 0.5
+"""How much farther in than elsewhere hair is full there."""
 EDGE_NOISE = ((14.0, 6, 2.1), (5.0, 5, 1.5), (2.2, 7, 1.0))
 """Unevenness of the outline: size of its blobs [mm], seed, depth [mm]."""
 
@@ -82,6 +84,8 @@ def outline(recipe: Recipe) -> FloatArray:
 def _distance(points: FloatArray, recipe: Recipe) -> FloatArray:
     """Return how far inside the uneven hairline points (n, 3) lie [mm], shape (n,)."""
     distance = distance_inside(points[:, [2, 1]], outline(recipe))
+    # At the nape hair tapers off over a longer way.
+    distance *= 1 - NAPE_TAPER * smoothstep(-15, -55, points[:, 1])
     for size, seed, depth in EDGE_NOISE:
         distance += depth * noise(points, size, seed + recipe.seed)
     return distance

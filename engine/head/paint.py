@@ -12,6 +12,9 @@ from .recipe import STANDARD, Recipe
 from .textures.albedo import vertex_colors
 from .textures.zones import Surface, zones_of
 
+BALD_SHADE = 0.3
+"""What of a shaven scalp's shade counts as hair, which keeps light off it."""
+
 
 def painted(drawn: DrawnSurface, recipe: Recipe = STANDARD) -> DrawnSurface:
     """Return a drawn skin in a person's colours, and with the mask of where hair grows.
@@ -24,6 +27,7 @@ def painted(drawn: DrawnSurface, recipe: Recipe = STANDARD) -> DrawnSurface:
     """
     placed = drawn if drawn.reference is not None else replace(drawn, reference=drawn.vertices)
     surface = Surface.of(placed)
-    hair = np.where(surface.inside("ear"), 0.0, scalp_cover(surface.places, recipe))
-    colors = vertex_colors(zones_of(surface), surface.places, recipe)
+    shade = BALD_SHADE if recipe.hair_style == "bald" else 1.0
+    hair = np.where(surface.inside("ear"), 0.0, shade * scalp_cover(surface.places, recipe))
+    colors = vertex_colors(zones_of(surface, recipe), surface.places, recipe)
     return replace(drawn, colors=colors, hair=hair)

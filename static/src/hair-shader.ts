@@ -62,7 +62,7 @@ void RE_Direct_Hair(const in IncidentLight light, const in vec3 position, const 
 
   float white = lobe(normalize(strand - (0.12 + strandShift) * faces), halfway, 110.0);
   float tinted = lobe(normalize(strand + (0.10 - strandShift) * faces), halfway, 26.0);
-  vec3 gloss = 0.015 * white + (0.16 * brightness + 0.006) * tinted * mix(hue, vec3(1.0), 0.12);
+  vec3 gloss = 0.009 * white + (0.16 * brightness + 0.003) * tinted * mix(hue, vec3(1.0), 0.12);
   float behind = pow(clamp(dot(-light.direction, view) * 0.5 + 0.5, 0.0, 1.0), 6.0);
   vec3 through = 0.55 * color * behind * across;
   reflectedLight.directSpecular += light.color * (gloss * facing + through) * strandGlow;
@@ -77,6 +77,7 @@ const SCATTER = /* glsl */ `
 strandShift = 0.16 * (strandTone - 0.78);
 material.specularColor *= 0.35;
 material.specularColorBlended *= 0.35;
+material.specularF90 *= 0.25;
 `;
 
 /** Cards seen edge on would draw a hard line, and what is left is cut as finely as the samples of a pixel allow. */

@@ -52,7 +52,6 @@ float noise(vec3 x) {
 }
 float pores(vec3 p) { return noise(p * 1.1) * 0.55 + noise(p * 2.3) * 0.45; }
 float stubble(vec3 p) { return noise(p * vec3(2.3, 1.1, 1.1)) * 0.6 + noise(p * vec3(4.1, 2.1, 2.1) + 40.0) * 0.4; }
-const vec3 CROPPED_HAIR = vec3(0.034, 0.021, 0.0145);
 `;
 
 /**
@@ -78,7 +77,7 @@ if (mapsShown < 1.0) {
     // Single hairs where they are few, a shade over all of the scalp where they are many.
     float grown = smoothstep(0.05, 0.95, vHair);
     hairCover = grown * mix(smoothstep(0.25, 0.75, strand), 1.0, grown);
-    diffuseColor.rgb = mix(diffuseColor.rgb, CROPPED_HAIR * (0.6 + 0.8 * strand), 0.93 * hairCover);
+    diffuseColor.rgb *= mix(1.0, 0.6 + 0.8 * strand, hairCover);
     roughnessFactor = mix(roughnessFactor, 0.9, hairCover);
   }
 }
@@ -94,10 +93,12 @@ skinOpen = 1.0 - 0.75 * mucosa;
   diffuseColor.rgb = mix(diffuseColor.rgb, texture2D(albedoMap, vSkinUv).rgb, mapsShown);
   diffuseColor.rgb *= 1.0 - mapsShown * depth * vec3(0.14, 0.22, 0.24);
   roughnessFactor = mix(roughnessFactor, orm.g, mapsShown);
+  // Under hair the scalp lies in its shadow: it neither shines nor lets light through.
+  hairCover = max(hairCover, mapsShown * smoothstep(0.12, 0.5, vHair));
 #endif
 skinBare = 1.0 - hairCover;
 skinBend = vForm.x;
-skinThin = vForm.y;
+skinThin = vForm.y * (1.0 - hairCover);
 float aboveNeck = smoothstep(neckFade.x, neckFade.y, vRest.y);
 diffuseColor.a *= aboveNeck;
 diffuseColor.rgb *= 0.15 + 0.85 * aboveNeck;

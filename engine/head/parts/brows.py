@@ -13,9 +13,9 @@ from ..head import DrawnSurface, Part
 from ..recipe import STANDARD, Recipe
 from .strands import FrontView, Strands, strand_part
 
-HAIRS = 470
+HAIRS = 640
 POINTS = 3
-WIDTH = 0.135
+WIDTH = 0.165
 
 
 class Shape(NamedTuple):
@@ -38,7 +38,7 @@ MALE = Shape(
 FEMALE = Shape(
     x=(13.4, 17.6, 24.6, 35.2, 44.4, 50.8, 55.0),
     y=(17.2, 18.4, 20.5, 23.4, 23.9, 21.4, 17.9),
-    width=(4.6, 5.6, 5.2, 4.2, 3.1, 2.0, 0.9),
+    width=(5.2, 6.4, 6.2, 5.2, 4.0, 2.6, 1.1),
     length=(5.4, 6.8, 7.6, 7.2, 6.6, 5.4, 4.0),
 )
 LOWER_ANGLES = (96.0, 84.0, 62.0, 38.0, 14.0, -8.0, -22.0)
@@ -90,7 +90,7 @@ def _left_brow(view: FrontView, recipe: Recipe, noise: np.random.Generator) -> S
     count = round(HAIRS * (0.85 + 0.15 * recipe.sex) * (1 - 0.3 * float(_elder(recipe))))
     share = noise.uniform(0, 1, count) ** 0.95
     # Densest a little under the middle line, thinning to both edges without one.
-    across = np.clip(noise.normal(-0.05, 0.46, count), -1.25, 1.2)
+    across = np.clip(noise.normal(-0.05, 0.52, count), -1.25, 1.2)
     x, y, width = brow_line(share, recipe)
     # Few hairs at the head of the brow: it begins as a haze.
     kept = noise.uniform(size=count) < 0.35 + 0.65 * smoothstep(0.0, 0.16, share)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from ...arrays import FloatArray, IntArray
-from ..head import Part
+from ...arrays import BoolArray, FloatArray, IntArray
+from ..head import DrawnSurface, Part
 from .strand_texture import LANES, MARGIN, WIDTH, lane_edges
 
-ROUNDNESS = 0.55
+ROUNDNESS = 0.4
 """How far a clump's sides face away from its middle, so that it is lit as a round lock."""
 
 
@@ -26,6 +27,7 @@ class Cards:
         colors: Linear RGB at each point, shape (n, k, 3).
         lanes: Which clump of the texture is drawn on each, shape (n,).
         flipped: Whether it is drawn mirrored, shape (n,).
+        reach: How far down the texture the tips lie, shape (n,); less than 1 cuts hair bluntly.
     """
 
     lines: FloatArray
@@ -35,11 +37,20 @@ class Cards:
     colors: FloatArray
     lanes: IntArray
     flipped: IntArray
+    reach: FloatArray
+
+    def only(self, chosen: BoolArray) -> Cards:
+        """Return the cards that are chosen, shape (n,)."""
+        return Cards(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
 
-def cards_part(name: str, groups: list[Cards]) -> Part:
-    """Return cards as one part on the skull."""
-    pieces = [_strips(cards) for cards in groups if len(cards.lines)]
+def cards_part(name: str, groups: list[Cards], skin: DrawnSurface | None = None) -> Part:
+    """Return cards as one part that rides the forehead's skin, or the skull when `skin` is None.
+
+    Cards that ride do so where they lie over the forehead; farther on they stay where they are.
+    """
+    groups = [cards for cards in groups if len(cards.lines)]
+    pieces = [_strips(cards) for cards in groups]
     starts = np.cumsum([0, *(len(piece[0]) for piece in pieces[:-1])])
     vertices, normals, colors, uvs = (
         np.concatenate([piece[k] for piece in pieces]) for k in range(4)
@@ -52,9 +63,23 @@ def cards_part(name: str, groups: list[Cards]) -> Part:
         triangles=np.concatenate(triangles),
         colors=np.clip(colors, 0, 1),
         material="hair",
-        follows="skull",
+        follows="skull" if skin is None else "skin",
+        roots=None if skin is None else _roots(groups, skin),
         uvs=uvs,
     )
+
+
+def on_forehead(points: FloatArray) -> BoolArray:
+    """Return which points (n, 3) lie over skin that the forehead's muscle moves, shape (n,)."""
+    return np.asarray((points[:, 1] > 45) & (points[:, 2] > 22))
+
+
+def _roots(groups: list[Cards], skin: DrawnSurface) -> IntArray:
+    """Return the skin vertex that each vertex of the cards rides: the nearest, or a still one."""
+    middles = np.concatenate([cards.lines.reshape(-1, 3) for cards in groups])
+    still = np.argmax(skin.vertices[:, 1])
+    nearest = cKDTree(skin.vertices).query(middles)[1]
+    return np.repeat(np.where(on_forehead(middles), nearest, still).astype(np.int64), 2)
 
 
 def _strips(cards: Cards) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, IntArray]:
@@ -73,7 +98,7 @@ def _strips(cards: Cards) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
     right = np.where(cards.flipped, edges[:, 0] + inset, edges[:, 1] - inset)
     uvs = np.empty((count, points, 2, 2))
     uvs[:, :, 0, 0], uvs[:, :, 1, 0] = left[:, None], right[:, None]
-    uvs[..., 1] = np.linspace(0, 1, points)[None, :, None]
+    uvs[..., 1] = (np.linspace(0, 1, points) * cards.reach[:, None])[:, :, None]
 
     one = [
         corner

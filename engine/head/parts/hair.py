@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import FloatArray, IntArray
+from ...arrays import BoolArray, FloatArray, IntArray
 from ..anatomy import smoothstep
 from ..hair_color import hair_color, strand_colors
+from ..hairline import hair_mask
 from ..head import DrawnSurface, Part
 from ..noise import noise as smooth_noise
 from ..recipe import STANDARD, Recipe
-from .cards import Cards, cards_part
+from .cards import Cards, cards_part, on_forehead
 from .scalp import EAR_CENTER, EAR_RADII, Scalp
 from .strand_texture import CLUMPS, LOOSE
 from .strands import Strands, strand_part
@@ -26,12 +27,18 @@ SWIRL = 0.5
 SWIRL_REACH = 26.0
 ROOT_DEPTH = 0.5
 """Cards begin this deep in the skin, mm."""
-ROOT_LIGHT = 0.42
+ROOT_LIGHT = 0.5
 """Light that reaches the roots, of that at the tips."""
-INNER_LIGHT = 0.5
+INNER_LIGHT = 0.62
 """Light that reaches the lowest layer of cards, of that on the outermost."""
-SEGMENT = 6.5
+SEGMENT = 8.5
 """Length of a card's pieces where their number allows, mm."""
+FULL = 0.97
+"""Hair this dense hides how the skin moves under it."""
+LONGEST_SINGLE = 42.0
+"""Length of a single hair that stands off, at most, mm."""
+SINGLE_PIECES = 2
+"""Pieces of a single hair."""
 LEAST = 0.5
 """No card grows where hair is thinner than this, or it would stand alone as a tuft."""
 HEM = -96.0
@@ -50,6 +57,8 @@ CLUMPING = (13.0, 26.0)
 def hair_parts(skin: DrawnSurface, recipe: Recipe = STANDARD) -> list[Part]:
     """Return the scalp's hair in reference space: "hair" are cards, "flyaways" are single hairs.
 
+    The first rows over the forehead, "hairline" and "baby_hairs", ride its skin.
+
     Args:
         skin: The drawn skin.
         recipe: Whose hair; its seed places every one.
@@ -60,11 +69,29 @@ def hair_parts(skin: DrawnSurface, recipe: Recipe = STANDARD) -> list[Part]:
     grow = {"combed": _combed, "hanging": _hanging, "coiled": _coiled}[style.kind]
     cards = _card_groups(scalp, style, grow, noise)
     strands = [_edge(scalp, style, noise), _flyaways(scalp, style, noise)]
-    parts = [cards_part("hair", cards)] if any(len(group.lines) for group in cards) else []
+    first = [_first_rows(group.lines[:, 0], recipe) for group in cards]
+    rows = [group.only(chosen) for group, chosen in zip(cards, first, strict=True)]
+    rest = [group.only(~chosen) for group, chosen in zip(cards, first, strict=True)]
     single = strands[0] + strands[1]
-    if len(single.lines):
-        parts.append(strand_part("flyaways", single, None, root_light=0.7))
+    ahead = _first_rows(single.lines[:, 0], recipe)
+    parts = [
+        cards_part(name, groups, surface)
+        for name, groups, surface in (("hairline", rows, skin), ("hair", rest, None))
+        if any(len(group.lines) for group in groups)
+    ]
+    parts += [
+        strand_part(name, single.only(chosen), surface, root_light=0.7)
+        for name, chosen, surface in (("baby_hairs", ahead, skin), ("flyaways", ~ahead, None))
+        if chosen.any()
+    ]
     return parts
+
+
+def _first_rows(roots: FloatArray, recipe: Recipe) -> BoolArray:
+    """Return which roots (n, 3) stand where the forehead moves and begins to bear hair, (n,)."""
+    moving = on_forehead(roots)
+    moving[moving] = hair_mask(roots[moving], recipe) < FULL
+    return moving
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,10 +119,16 @@ def _card_groups(scalp: Scalp, style: Style, grow: Grow, noise: np.random.Genera
     layer = noise.uniform(0, 1, count) ** 0.8
     length = style.at(style.length, y) * (0.4 + 0.6 * thin) * noise.uniform(0.72, 1.15, count)
     rise = style.at(style.rise, y) * (0.3 + 0.8 * layer) * (0.6 + 0.4 * thin)
-    rise *= 1 + 0.45 * front(roots)
+    rise *= 1 + 0.45 * front(roots) if style.kind == "combed" else 1.0
+    # At the front hairline hairs stand singly and rise off the forehead.
+    first = front_edge(roots, mask) if style.kind == "combed" else np.zeros(count)
+    rise = np.maximum(rise, 0.62 * first * length)
     width = style.at(style.width, y) * noise.uniform(0.7, 1.25, count) * (0.6 + 0.4 * thin)
-    colors = strand_colors(scalp.recipe, count, noise, spread=0.45)
+    width *= 1 - 0.3 * first
+    colors = strand_colors(scalp.recipe, count, noise, spread=0.15, tone=0.12)
     edge = 1 - smoothstep(0.75, 1.0, mask)
+    if style.kind == "hanging":
+        width *= 1 - 0.5 * edge
     # At the edge hairs show singly, unless they are long.
     loosened = 0.8 * edge if style.kind == "combed" else 0.0
     lanes = _lanes(length * (1 - loosened), layer, mask, noise)
@@ -108,7 +141,8 @@ def _card_groups(scalp: Scalp, style: Style, grow: Grow, noise: np.random.Genera
         grown = grow(scalp, style, roots[some], length[some], rise[some], int(pieces), noise)
         light = _light(layer[some], edge[some], int(pieces) + 1)
         tinted = light[..., None] * colors[some, None, :]
-        cards.append(_cards(grown, width[some], tinted, lanes[some], noise))
+        reach = noise.uniform(*style.cut, int(some.sum()))
+        cards.append(_cards(grown, width[some], tinted, lanes[some], reach, noise))
     return cards
 
 
@@ -128,6 +162,7 @@ def _cards(
     width: FloatArray,
     colors: FloatArray,
     lanes: IntArray,
+    reach: FloatArray,
     noise: np.random.Generator,
 ) -> Cards:
     count = len(grown.lines)
@@ -136,17 +171,18 @@ def _cards(
     across /= np.maximum(np.linalg.norm(across, axis=2, keepdims=True), 1e-9)
     up = np.cross(across, grown.tangents)
     loose = np.where(lanes >= LOOSE.start, 0.4, 1.0)
-    roll = noise.normal(0, 0.5, count)[:, None] + noise.normal(0, 0.35, count)[:, None] * along
+    roll = noise.normal(0, 0.38, count)[:, None] + noise.normal(0, 0.3, count)[:, None] * along
     roll = roll * loose[:, None]
     sides = np.cos(roll)[..., None] * across + np.sin(roll)[..., None] * up
     return Cards(
         lines=grown.lines,
         sides=sides,
         normals=grown.normals + 0.25 * up,
-        widths=width[:, None] * (0.85 + 0.25 * np.sin(np.pi * along))[None, :],
+        widths=width[:, None] * (1.0 - 0.5 * along**2)[None, :],
         colors=colors,
         lanes=lanes,
         flipped=noise.integers(0, 2, count).astype(bool),
+        reach=reach,
     )
 
 
@@ -170,7 +206,9 @@ def _combed(
     """Return lines that follow the head from their roots, rising off it."""
     count = len(roots)
     turn = style.ruffle * (
-        1.1 * smooth_noise(roots, 13.0, 41 + scalp.recipe.seed) + noise.normal(0, 0.55, count)
+        1.3 * smooth_noise(roots, 22.0, 41 + scalp.recipe.seed)
+        + 0.6 * smooth_noise(roots, 8.0, 42 + scalp.recipe.seed)
+        + noise.normal(0, 0.5, count)
     )
     stiffness = style.stiffness + (0.95 - style.stiffness) * front(roots)
     step = length / pieces
@@ -261,8 +299,8 @@ def _clear(scalp: Scalp, points: FloatArray, lifted: FloatArray) -> tuple[FloatA
     points = points + pushed * EAR_RADII
     # Nothing hangs into the face: a curtain of hair ends beside it.
     face = FACE_EDGE + 0.25 * np.maximum(points[:, 1] - 10, 0) - 1.6 * lifted
-    front_ = points[:, 1] < 52
-    points[:, 2] = np.where(front_, np.minimum(points[:, 2], face), points[:, 2])
+    face += 60 * smoothstep(35, 78, points[:, 1])
+    points[:, 2] = np.minimum(points[:, 2], face)
     outward = points * [1.0, 0.0, 1.0] - [0, 0, HANG_AXIS[1]]
     outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
     low = smoothstep(20, -30, points[:, 1])[:, None]
@@ -332,16 +370,28 @@ def flow(scalp: Scalp, style: Style, points: FloatArray, normals: FloatArray) ->
     heading = from_whorl / np.maximum(away, 1e-9)
     heading = heading + SWIRL * np.exp(-away / SWIRL_REACH) * np.cross(heading, normals)
     top = smoothstep(52, 88, points[:, 1])[:, None]
-    forward = smoothstep(-20, 60, points[:, 2])[:, None]
+    # Beside the forehead hair leaves the face, backwards.
+    temple = smoothstep(24, 46, np.abs(points[:, 0])) * smoothstep(20, 48, points[:, 2])
+    temple = (temple if style.kind == "combed" else 0.0 * temple)[:, None]
+    forward = (1 - temple) * smoothstep(-20, 60, points[:, 2])[:, None]
     combed = np.array([-style.sweep, 0.3, 0.9]) * forward
     if style.parting is not None:
-        side = np.tanh((points[:, 0] - style.parting) / 6.0)
+        side = np.tanh((points[:, 0] - style.parting) / 3.0)
         over = front(points)
         combed = np.column_stack([1.5 * side, 0.4 * over, 0.35 - 0.75 * over])
     # On the sides hair falls, at the temples backwards.
     back = 0.75 * smoothstep(15, 50, points[:, 2])
     fallen = np.column_stack([np.zeros(len(points)), np.full(len(points), -1.0), -0.1 - back])
-    heading = top * (0.55 * heading + combed) + (1 - top) * (0.45 * heading + fallen)
+    # The first row stands up and aside, and does not lie on the forehead.
+    if style.parting is None and style.kind == "combed":
+        row = front_row(points)[:, None]
+        combed = combed + row * (np.array([-0.9, 0.55, 0.1]) - combed)
+        top = np.maximum(top, row)
+    top = top * (1 - 0.8 * temple)
+    whorl = 1 - temple
+    heading = top * (0.55 * whorl * heading + combed) + (1 - top) * (
+        0.45 * whorl * heading + fallen
+    )
     heading -= normals * (heading * normals).sum(axis=1, keepdims=True)
     return np.asarray(heading / np.maximum(np.linalg.norm(heading, axis=1, keepdims=True), 1e-9))
 
@@ -349,6 +399,17 @@ def flow(scalp: Scalp, style: Style, points: FloatArray, normals: FloatArray) ->
 def front(points: FloatArray) -> FloatArray:
     """Return how far points (n, 3) lie in the front of the hair, over the forehead, 0..1."""
     return np.asarray(smoothstep(25, 65, points[:, 2]) * smoothstep(50, 72, points[:, 1]))
+
+
+def front_row(points: FloatArray) -> FloatArray:
+    """Return how far points (n, 3) lie in the first rows over the forehead, 0..1."""
+    return np.asarray(smoothstep(52, 74, points[:, 2]) * smoothstep(58, 68, points[:, 1]))
+
+
+def front_edge(points: FloatArray, mask: FloatArray) -> FloatArray:
+    """Return how near points (n, 3) of hair mask (n,) lie to the hairline of the forehead, 0..1."""
+    ahead = smoothstep(30, 50, points[:, 2]) * smoothstep(48, 60, points[:, 1])
+    return np.asarray(ahead * (1 - smoothstep(0.7, 1.0, mask)))
 
 
 def turned(vectors: FloatArray, axes: FloatArray, angles: FloatArray) -> FloatArray:
@@ -363,9 +424,9 @@ def _flyaways(scalp: Scalp, style: Style, noise: np.random.Generator) -> Strands
     keep = noise.uniform(size=len(roots)) < smoothstep(0.3, 0.9, mask)
     roots = roots[keep]
     count, y = len(roots), roots[:, 1]
-    length = style.at(style.length, y) * noise.uniform(0.8, 1.15, count)
+    length = np.minimum(style.at(style.length, y), LONGEST_SINGLE) * noise.uniform(0.8, 1.15, count)
     rise = style.at(style.rise, y) * noise.uniform(0.95, 1.5, count)
-    grown = _combed(scalp, style, roots, length, rise, 3, noise)
+    grown = _combed(scalp, style, roots, length, rise, SINGLE_PIECES, noise)
     return _single(scalp, grown, noise.uniform(0.10, 0.17, count), noise)
 
 
@@ -377,26 +438,17 @@ def _edge(scalp: Scalp, style: Style, noise: np.random.Generator) -> Strands:
     count, y = len(roots), roots[:, 1]
     length = np.minimum(style.at(style.length, y), 17.0) * (0.35 + 0.65 * mask)
     rise = np.minimum(style.at(style.rise, y), 4.0) * noise.uniform(0.1, 0.8, count)
-    grown = _combed(scalp, style, roots, length * noise.uniform(0.5, 1.1, count), rise, 2, noise)
+    length = length * noise.uniform(0.5, 1.1, count)
+    grown = _combed(scalp, style, roots, length, rise, SINGLE_PIECES, noise)
     return _single(scalp, grown, 0.10 + 0.09 * mask, noise)
 
 
 def _single(scalp: Scalp, grown: _Grown, width: FloatArray, noise: np.random.Generator) -> Strands:
-    count, points = grown.lines.shape[:2]
-    if points == 3:  # as many points as the longest, so that all make one part
-        lines = np.concatenate([grown.lines, grown.lines[:, -1:]], axis=1)
-        share = np.array([0, 2 / 3, 4 / 3, 2])
-        low = np.minimum(share.astype(int), 1)
-        part = (share - low)[None, :, None]
-        lines = grown.lines[:, low] * (1 - part) + grown.lines[:, low + 1] * part
-        normals = grown.normals[:, low] * (1 - part) + grown.normals[:, low + 1] * part
-    else:
-        lines, normals = grown.lines, grown.normals
     return Strands(
-        lines=lines,
-        normals=normals,
+        lines=grown.lines,
+        normals=grown.normals,
         width=width,
-        colors=strand_colors(scalp.recipe, count, noise),
+        colors=strand_colors(scalp.recipe, len(width), noise),
     )
 
 

@@ -49,25 +49,25 @@ class Lane(NamedTuple):
 
 
 LANES = (
-    Lane(strands=54, width=1.35, spread=0.98, gather=0.30, shortest=0.62, wave=1.0),
-    Lane(strands=48, width=1.30, spread=0.98, gather=0.55, shortest=0.55, wave=1.6),
-    Lane(strands=40, width=1.25, spread=0.95, gather=0.40, shortest=0.50, wave=2.0),
-    Lane(strands=34, width=1.20, spread=0.95, gather=0.15, shortest=0.45, wave=1.8),
-    Lane(strands=25, width=1.15, spread=0.92, gather=0.30, shortest=0.40, wave=2.4),
-    Lane(strands=18, width=1.10, spread=0.90, gather=0.10, shortest=0.40, wave=2.4),
-    Lane(strands=11, width=1.00, spread=0.85, gather=-0.05, shortest=0.40, wave=3.0),
-    Lane(strands=6, width=0.95, spread=0.75, gather=-0.10, shortest=0.45, wave=3.0),
+    Lane(strands=46, width=1.20, spread=0.98, gather=0.30, shortest=0.40, wave=1.0),
+    Lane(strands=40, width=1.15, spread=0.98, gather=0.45, shortest=0.35, wave=1.6),
+    Lane(strands=34, width=1.10, spread=0.96, gather=0.35, shortest=0.30, wave=2.0),
+    Lane(strands=28, width=1.05, spread=0.96, gather=0.25, shortest=0.28, wave=1.8),
+    Lane(strands=21, width=1.00, spread=0.94, gather=0.30, shortest=0.28, wave=2.4),
+    Lane(strands=15, width=0.95, spread=0.92, gather=0.10, shortest=0.28, wave=2.4),
+    Lane(strands=10, width=0.90, spread=0.88, gather=-0.05, shortest=0.30, wave=3.0),
+    Lane(strands=6, width=0.88, spread=0.80, gather=-0.10, shortest=0.35, wave=3.0),
     Lane(
-        34, width=0.95, spread=1.0, gather=0.0, shortest=0.3, wave=3.0, stagger=0.5, pointed=False
+        44, width=0.95, spread=1.0, gather=0.0, shortest=0.25, wave=3.0, stagger=0.6, pointed=False
     ),
     Lane(
-        26, width=0.92, spread=1.0, gather=0.0, shortest=0.3, wave=3.5, stagger=0.5, pointed=False
+        32, width=0.92, spread=1.0, gather=0.0, shortest=0.25, wave=3.5, stagger=0.6, pointed=False
     ),
     Lane(
-        18, width=0.90, spread=1.0, gather=0.0, shortest=0.3, wave=4.0, stagger=0.5, pointed=False
+        22, width=0.90, spread=1.0, gather=0.0, shortest=0.25, wave=4.0, stagger=0.6, pointed=False
     ),
     Lane(
-        10, width=0.88, spread=1.0, gather=0.0, shortest=0.3, wave=4.0, stagger=0.5, pointed=False
+        12, width=0.88, spread=1.0, gather=0.0, shortest=0.25, wave=4.0, stagger=0.6, pointed=False
     ),
 )
 """Left to right, all as wide: clumps from solid to wispy, then short hairs that do not clump."""

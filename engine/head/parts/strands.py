@@ -38,6 +38,12 @@ class Strands:
             np.concatenate([self.colors, other.colors]),
         )
 
+    def only(self, chosen: BoolArray) -> Strands:
+        """Return the strands that are chosen, shape (n,)."""
+        return Strands(
+            self.lines[chosen], self.normals[chosen], self.width[chosen], self.colors[chosen]
+        )
+
     def reflected(self) -> Strands:
         """Return the mirror image in x = 0."""
         flip = np.array([-1.0, 1.0, 1.0])

@@ -30,6 +30,7 @@ class Style:
         ruffle: How much neighbouring clumps differ in direction, radians.
         stiffness: How far hair goes on straight where the head bends away from it, 0 to 1.
         segments: Fewest and most pieces of a card.
+        cut: Which share of the texture's strands the cards end at: 1 tapers, less is blunt.
         flyaways: Single hairs per square centimetre that stand off.
         edge: Baby hairs per square centimetre of the hairline.
     """
@@ -44,6 +45,7 @@ class Style:
     ruffle: float = 0.25
     stiffness: float = 0.35
     segments: tuple[int, int] = (2, 5)
+    cut: tuple[float, float] = (1.0, 1.0)
     flyaways: float = 1.2
     edge: float = 30.0
 
@@ -74,12 +76,13 @@ STYLES: Mapping[str, Style] = {
     ),
     "crop": Style(
         kind="combed",
-        length=(5.0, 7.0, 10.0, 15.0, 23.0, 31.0, 33.0),
-        rise=(0.5, 0.9, 1.8, 3.6, 8.0, 13.0, 10.0),
-        width=(6.5, 7.0, 7.0, 6.5, 5.8, 5.4, 5.4),
-        density=(4.2, 4.8, 5.2, 5.4, 5.6, 5.7, 5.8),
-        sweep=0.35,
-        ruffle=0.42,
+        length=(4.5, 6.0, 9.0, 15.0, 25.0, 34.0, 36.0),
+        rise=(0.5, 0.8, 1.6, 3.4, 7.5, 12.0, 9.0),
+        width=(6.0, 6.0, 5.6, 4.8, 4.0, 3.8, 3.8),
+        density=(8.0, 8.0, 8.0, 7.5, 7.0, 6.6, 6.6),
+        sweep=0.45,
+        ruffle=0.24,
+        segments=(1, 4),
     ),
     "short": Style(
         kind="combed",
@@ -95,12 +98,13 @@ STYLES: Mapping[str, Style] = {
         kind="hanging",
         segments=(7, 7),
         length=(70.0, 90.0, 110.0, 135.0, 160.0, 185.0, 195.0),
-        rise=(5.0, 6.0, 8.0, 9.0, 9.0, 8.0, 6.0),
-        width=(6.0, 6.5, 7.0, 7.0, 7.5, 8.0, 8.0),
-        density=(2.6, 2.8, 2.8, 2.8, 3.2, 3.6, 4.0),
+        rise=(7.0, 8.0, 9.0, 10.0, 10.0, 9.5, 7.5),
+        width=(6.5, 7.0, 7.5, 7.5, 7.5, 7.5, 7.5),
+        density=(3.6, 3.8, 3.8, 3.8, 4.2, 4.6, 4.8),
+        cut=(0.5, 0.75),
         parting=8.0,
         ruffle=0.10,
-        flyaways=0.0,
+        flyaways=0.3,
         edge=18.0,
     ),
     "curly": Style(
@@ -109,7 +113,7 @@ STYLES: Mapping[str, Style] = {
         length=(16.0, 24.0, 32.0, 40.0, 46.0, 50.0, 48.0),
         rise=(5.0, 9.0, 15.0, 24.0, 32.0, 36.0, 34.0),
         width=(3.6, 4.4, 5.2, 6.0, 6.4, 6.6, 6.6),
-        density=(5.5, 5.4, 5.0, 4.8, 4.6, 4.6, 4.6),
+        density=(5.2, 5.1, 4.7, 4.5, 4.35, 4.35, 4.35),
         ruffle=0.5,
         flyaways=0.0,
     ),
@@ -118,8 +122,9 @@ RECEDING = replace(
     STYLES["crop"],
     length=(4.0, 6.0, 9.0, 13.0, 18.0, 22.0, 22.0),
     rise=(0.6, 1.0, 1.8, 3.0, 4.0, 4.0, 3.5),
-    density=(6.0, 7.0, 7.5, 7.0, 6.5, 6.5, 6.5),
-    ruffle=0.3,
+    density=(8.0, 8.0, 8.0, 7.5, 7.0, 7.0, 7.0),
+    ruffle=0.24,
+    edge=14.0,
 )
 
 

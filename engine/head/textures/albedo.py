@@ -9,28 +9,12 @@ import numpy.typing as npt
 from numba import njit
 
 from ...arrays import Float32Array, FloatArray
+from ..hair_color import brow_color, scalp_color
 from ..noise import spot_noise, value_noise
 from ..recipe import Recipe
 from .pigment import BLOOD, CAROTENE, MELANIN, blood_visibility, tone
 from .texels import Texels
 from .zones import Zones
-
-HAIR_COLORS = {
-    "black": (0.012, 0.010, 0.010),
-    "dark_brown": (0.030, 0.018, 0.012),
-    "brown": (0.072, 0.040, 0.023),
-    "auburn": (0.095, 0.033, 0.016),
-    "red": (0.20, 0.062, 0.022),
-    "dark_blond": (0.16, 0.10, 0.055),
-    "blond": (0.33, 0.225, 0.125),
-    "gray": (0.26, 0.26, 0.26),
-    "white": (0.58, 0.57, 0.55),
-}
-"""Linear colours of hair; seen as an undercoat on scalp, brows and in stubble."""
-UNDERCOATS = {
-    "bald": 0.0, "buzz": 0.8, "crop": 0.9, "short": 0.9, "bob": 0.9, "curly": 0.9, "receding": 0.85,
-}  # fmt: skip
-"""How much of the scalp a style's roots cover."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +23,13 @@ class Complexion:
 
     Attributes:
         base: Linear colour of the forehead.
-        hair: Linear colour of hair.
+        hair: Linear colours of the roots of scalp and of brows and beard, shape (2, 3).
         dark: Recipe.skin.
         visible: How much of a blush shows.
         stubble: Beard shadow, 0..1.
         freckles: Their chance.
         age: 0 young to 1 old.
-        coat: How much of the scalp roots cover.
+        shaven: Whether the scalp's roots lie under the skin, as a beard's.
         female: Share of painted-by-nature contrast of lips.
         seed: Of all noise.
     """
@@ -57,25 +41,23 @@ class Complexion:
     stubble: float
     freckles: float
     age: float
-    coat: float
+    shaven: bool
     seed: int
 
     @classmethod
     def of(cls, recipe: Recipe) -> Complexion:
         """Return the complexion that a recipe describes."""
-        hair = np.array(HAIR_COLORS[recipe.hair_color])
-        hair = hair + recipe.grayness * (np.array(HAIR_COLORS["gray"]) - hair)
         # A woman's shaven-like down is left out; so is a child's.
         beard = recipe.sex**2 * (0.25 + 0.75 * recipe.stubble)
         return cls(
             base=tone(recipe),
-            hair=hair,
+            hair=np.stack([scalp_color(recipe), brow_color(recipe)]),
             dark=recipe.skin,
             visible=blood_visibility(recipe),
             stubble=beard,
             freckles=recipe.freckles * (1 - 0.7 * recipe.skin),
             age=float(np.clip((recipe.age - 25) / 55, 0, 1)),
-            coat=UNDERCOATS.get(recipe.hair_style, 0.85),
+            shaven=recipe.hair_style == "bald",
             seed=recipe.seed % 2**20,
         )
 
@@ -102,7 +84,7 @@ def colors_at(places: Float32Array, table: Float32Array, recipe: Recipe) -> Floa
     """Return linear colours (n, 3) at places (n, 3) where the zones are `table` (n, k)."""
     look = Complexion.of(recipe)
     numbers = np.array([
-        look.dark, look.visible, look.stubble, look.freckles, look.age, look.coat, recipe.sex,
+        look.dark, look.visible, look.stubble, look.freckles, look.age, look.shaven, recipe.sex,
     ])  # fmt: skip
     pigments = np.stack([MELANIN, BLOOD, CAROTENE])
     names = [field.name for field in fields(Zones)]
@@ -149,7 +131,7 @@ def _colored(
     seed: int,
 ) -> npt.NDArray[np.float32]:
     dark, visible, stubble, freckling = numbers[0], numbers[1], numbers[2], numbers[3]
-    age, coat, sex = numbers[4], numbers[5], numbers[6]
+    age, shaven, sex = numbers[4], numbers[5], numbers[6]
     found = np.empty((len(places), 3), dtype=np.float32)
     for n in range(len(places)):
         x, y, z = float(places[n, 0]), float(places[n, 1]), float(places[n, 2])
@@ -243,27 +225,34 @@ def _colored(
         red = red * (visible + (1 - visible) * 0.6 * lip)
         # Stubble's shadow: hair under the skin, seen through it bluish, then each hair's tip.
         cover = 0.0
-        if beard > 0.01 and stubble > 0.01:
-            even = beard * (1 + 0.25 * n3 + 0.18 * n6)
-            shade = stubble * min(max(even, 0.0), 1.0)
+        shorn = max(beard * stubble, shaven * 1.4 * scalp)
+        if shorn > 0.005:
+            shade = min(max(shorn * (1 + 0.25 * n3 + 0.18 * n6), 0.0), 1.0)
             brown += 0.34 * shade * (1 - 0.3 * dark)
             gold -= 0.30 * shade * (1 - dark)
             red -= 0.07 * shade
             tip = spot_noise(
                 x / 0.95, y / 0.95, z / 0.95, 0.95 * min(shade * 2.2, 1.0), 0.12, 0.25, seed + 41
             )
-            cover = 0.72 * _step(0.0, 0.7, tip) * min(1.0, 0.35 + stubble)
+            cover = 0.72 * _step(0.0, 0.7, tip) * min(1.0, 0.35 + max(stubble, 0.6 * shaven))
+
+        # Where hair begins, its roots stand apart; farther in they hide the scalp.
+        root = 0.0
+        if shaven < 0.5 and scalp > 0.01:
+            dot = spot_noise(
+                x / 1.15, y / 1.15, z / 1.15, min(1.6 * scalp, 1.0), 0.16, 0.34, seed + 46
+            )
+            full = _step(0.05, 1.0, scalp) * scalp
+            root = min(1.05 * full + (1 - full) * 0.6 * _step(0.0, 0.8, dot), 0.97)
+        strand = min(max(0.8 * brow * (1 + 0.4 * nf), 0.0), 0.9)
 
         for c in range(3):
             density = brown * pigments[0, c] + red * pigments[1, c] + gold * pigments[2, c]
             light = base[c] * np.exp(-density)
-            light += cover * (0.25 * light + 0.6 * hair[c] - light)
+            light += cover * (0.25 * light + 0.6 * hair[1, c] - light)
             # Roots of scalp and brows; single hairs are drawn over them.
-            root = coat * 0.86 * scalp * scalp
-            root *= 1 + 0.28 * nf * (1 - scalp)
-            light += min(max(root, 0.0), 0.93) * (0.85 * hair[c] + 0.06 * light - light)
-            strand = 0.45 * brow * (1 + 0.4 * nf)
-            light += min(max(strand, 0.0), 1.0) * (0.55 * light * hair[c] ** 0.3 - light) * 0.9
+            light += root * (hair[0, c] * (1 + 0.25 * nf) - light)
+            light += strand * (0.3 * light + 0.5 * hair[1, c] - light)
             found[n, c] = light
 
         # Wet and hidden skin.

@@ -48,7 +48,7 @@ def head_textures(
     drawn = head.drawn
     if drawn.uvs is None or drawn.reference is None:
         return {}
-    zones = zones_of(Surface.of(drawn))
+    zones = zones_of(Surface.of(drawn), recipe)
     check()
     fine = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, ALBEDO_SIZE)
     colors = srgb_bytes(albedo(fine, zones, drawn.reference, recipe))

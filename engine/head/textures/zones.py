@@ -14,9 +14,10 @@ from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ..anatomy import smoothstep
-from ..hairline import hair_mask
+from ..hairline import scalp_cover
 from ..head import DrawnSurface
 from ..parts.brows import brow_line
+from ..recipe import Recipe
 
 LIPS = ("upper_lip", "lower_lip")
 LIPS_INSIDE = ("upper_lip_inner", "lower_lip_inner")
@@ -95,7 +96,7 @@ class Zones:
         lid: Share of the lids' edges.
         lashes: Share of the line that lashes grow on.
         beard: How densely a beard grows.
-        scalp: How densely hair grows on the scalp.
+        scalp: How far roots of hair hide the scalp.
         brow: How densely the brows grow.
         freckles: How many freckles come.
         pores: How wide pores are.
@@ -126,8 +127,8 @@ class Zones:
         return np.column_stack(list(vars(self).values()))
 
 
-def zones_of(surface: Surface) -> Zones:
-    """Return the zones of the skin."""
+def zones_of(surface: Surface, recipe: Recipe) -> Zones:
+    """Return the zones of the skin of a person."""
     x, y, z = np.abs(surface.places[:, 0]), surface.places[:, 1], surface.places[:, 2]
 
     def spot(cx: float, cy: float, width: float, height: float) -> FloatArray:
@@ -181,8 +182,8 @@ def zones_of(surface: Surface) -> Zones:
         lashes=surface.mask("upper_lid_margin") * smoothstep(-1, 1.5, y)
         + 0.25 * surface.mask("lower_lid_margin"),
         beard=beard,
-        scalp=hair_mask(surface.places),
-        brow=_brow(x, y, z),
+        scalp=scalp_cover(surface.places, recipe) * (1 - surface.mask("ear", blur=1)),
+        brow=_brow(x, y, z, recipe),
         freckles=np.clip(
             1.1 * spot(24, -26, 34, 18) + nose + 0.45 * spot(0, 45, 50, 30) + 0.25 * front, 0, 1.3
         )
@@ -217,9 +218,10 @@ def _beard(surface: Surface, x: FloatArray, y: FloatArray, z: FloatArray) -> Flo
     return np.asarray(np.clip(grown * corner * under * (1 - nose) * (1 - bald), 0, 1))
 
 
-def _brow(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    share = np.clip((x - 13.5) / 40, 0, 1)
-    _, middle, width = brow_line(share)
+def _brow(x: FloatArray, y: FloatArray, z: FloatArray, recipe: Recipe) -> FloatArray:
+    start, end = brow_line(np.array([0.0, 1.0]), recipe)[0]
+    share = np.clip((x - start) / (end - start), 0, 1)
+    _, middle, width = brow_line(share, recipe)
     band = np.exp(-(((y - middle) / (0.62 * width)) ** 4))
-    ends = smoothstep(10, 15, x) * smoothstep(57, 51, x)
+    ends = smoothstep(start - 3, start + 5, x) * smoothstep(end + 1, end - 5, x)
     return np.asarray(band * ends * smoothstep(40, 60, z))

@@ -40,7 +40,7 @@ MOST_BYTES = 3_000_000
 def skin(head: Head) -> tuple[Texels, Zones]:
     drawn = head.drawn
     texels = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, SMALL)
-    return texels, zones_of(Surface.of(drawn))
+    return texels, zones_of(Surface.of(drawn), STANDARD)
 
 
 @pytest.fixture(scope="module")
