@@ -34,7 +34,7 @@ INNER_LIGHT = 0.62
 SEGMENT = 8.5
 """Length of a card's pieces where their number allows, mm."""
 FULL = 0.97
-"""Hair this dense hides how the skin moves under it."""
+"""Hair at least this dense hides how the skin moves under it."""
 LONGEST_SINGLE = 42.0
 """Length of a single hair that stands off, at most, mm."""
 SINGLE_PIECES = 2
