@@ -18,7 +18,7 @@ from engine.head.textures.zones import Surface, zones_of
 def test_they_are_those_of_the_texture(head: Head) -> None:
     surface = Surface.of(head.drawn)
     recipe = replace(STANDARD, asymmetry=0.0)
-    expected = vertex_colors(zones_of(surface), surface.places, recipe)
+    expected = vertex_colors(zones_of(surface, recipe), surface.places, recipe)
     np.testing.assert_allclose(head.drawn.colors, expected, atol=1e-6)
 
 
