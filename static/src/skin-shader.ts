@@ -88,10 +88,10 @@ skinOpen = 1.0 - 0.75 * mucosa;
   vec3 creased = texture2D(wrinkleMap, vSkinUv).xyz * 2.0 - 1.0;
   relief = mix(relief, creased, vWrinkle);
   // A wrinkle's walls see less of the room than the skin around.
-  float depth = vWrinkle * saturate(1.6 * length(creased.xy));
+  float depth = vWrinkle * saturate(2.0 * length(creased.xy));
   skinOpen = mix(skinOpen, orm.r * (1.0 - 0.4 * depth), mapsShown);
   diffuseColor.rgb = mix(diffuseColor.rgb, texture2D(albedoMap, vSkinUv).rgb, mapsShown);
-  diffuseColor.rgb *= 1.0 - mapsShown * depth * vec3(0.14, 0.22, 0.24);
+  diffuseColor.rgb *= 1.0 - mapsShown * depth * vec3(0.18, 0.28, 0.30);
   roughnessFactor = mix(roughnessFactor, orm.g, mapsShown);
   // Under hair the scalp lies in its shadow: it neither shines nor lets light through.
   hairCover = max(hairCover, mapsShown * smoothstep(0.12, 0.5, vHair));

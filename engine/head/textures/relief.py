@@ -46,7 +46,7 @@ def relief(
     folds = _folds(at, table, seed)
     age = float(np.clip((recipe.age - OLD[0]) / (OLD[1] - OLD[0]), 0, 1))
     rest = fine + STAYING * age**1.2 * folds
-    return rest, np.asarray(fine + np.float32(0.7 + 0.55 * age) * folds)
+    return rest, np.asarray(fine + np.float32(1.05 + 0.3 * age) * folds)
 
 
 def normals(texels: Texels, heights: Float32Array) -> npt.NDArray[np.uint8]:
@@ -174,7 +174,7 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
                 whole = 0.62 + 0.95 * value_noise(side / 24, 5.3 * k, 1.5, seed + 64)
                 whole = min(max(whole, 0.0), 1.0) * (0.6 + 0.4 * hashed(k, 2, 0, seed))
                 fork = 3.4 * value_noise(side / 17, 7.7 * k, 2.5, seed + 75)
-                depth += mask * 0.60 * whole * _crease(gap, 0.60)
+                depth += mask * 0.75 * whole * _crease(gap, 0.75)
                 if fork > 0.2:
                     depth += mask * 0.30 * min(whole, fork) * _crease(gap - fork, 0.42)
         # Glabella: upright lines between the brows, one deeper than the other, and lesser ones.
@@ -238,7 +238,11 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
             depth += (
                 0.85
                 * ends
-                * (np.exp(-((gap / 1.15) ** 2)) - 0.35 * np.exp(-(((gap - 3.0) / 2.0) ** 2)))
+                * (
+                    np.exp(-((gap / 1.15) ** 2))
+                    + 0.4 * np.exp(-((gap / 3.4) ** 2))
+                    - 0.35 * np.exp(-(((gap - 3.0) / 2.0) ** 2))
+                )
             )
             beside = gap + 3.6 + 1.6 * hashed(left, 9, 0, seed) + 3.0 * (share - 0.8)
             depth += 0.30 * _ramp(0.35, 0.75, share) * ends * _crease(beside, 0.6)
