@@ -17,6 +17,7 @@ from .arrays import FloatArray
 from .dynamics import Pull
 from .head import Head
 from .head.anatomy import smoothstep
+from .head.geometry import vertex_normals
 from .jaw import JawHinge
 from .muscle import (
     MIDLINE_BLEND_MM,
@@ -83,6 +84,27 @@ def rest_basis(
         force[tissue.held] = 0.0
         basis[row] = muscle.force_scale * force.T
     return basis
+
+
+def whole_pull(head: Head, muscles: Sequence[Muscle]) -> FloatArray:
+    """Return how much of `head`'s loose skin each muscle pulls on, weighted, mm², shape (m,).
+
+    Lid muscles, which turn lids instead of pulling skin, have 1.
+    """
+    n = head.sheet_count
+    points = head.points[:n]
+    triangles = head.triangles[(head.triangles < n).all(axis=1)]
+    a, b, c = (points[triangles[:, corner]] for corner in range(3))
+    share = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
+    area = np.bincount(triangles.ravel(), np.repeat(share, 3), minlength=n)
+    area[head.fixed] = 0.0
+    samples = Samples(points, vertex_normals(points, triangles), head.jaw_weight[:n])
+    pulls = np.ones(len(muscles))
+    for row, muscle in enumerate(muscles):
+        if not isinstance(muscle, LidMuscle):
+            force = force_density(muscle, samples, ring="ring")
+            pulls[row] = np.linalg.norm(force, axis=1) @ area
+    return pulls
 
 
 def force_density(muscle: Muscle, samples: Samples, *, ring: str) -> FloatArray:

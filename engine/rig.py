@@ -16,7 +16,18 @@ from .channels import GROUPS, LIMITS, Channels
 from .emotion import Emotion, find_emotion
 from .errors import EngineError, InvalidValue, UnknownName
 from .facs import ActionUnit, parse_facs, split_side
-from .head import LEVELS, STANDARD, Head, Recipe, paper_head, people, person_head, tissue_of_life
+from .force_basis import whole_pull
+from .head import (
+    LEVELS,
+    STANDARD,
+    Head,
+    Recipe,
+    muscle_strength,
+    paper_head,
+    people,
+    person_head,
+    tissue_of_life,
+)
 from .jaw import JawHinge
 from .muscle import LidMuscle, Muscle, SphincterMuscle, mirrored
 from .rig_data import load_action_units, load_emotions, load_muscles
@@ -38,6 +49,8 @@ PAPER_FORCE_SHARES: Mapping[str, float] = {
     "orbicularis_oris": 0.44,
 }
 """The same where 0.42 leaves a landmark of Table 1 outside its human range; by muscle, no side."""
+FORCE_SHARES = (0.5, 2.4)
+"""Least and greatest force of a muscle against the head it was fitted on."""
 EDITABLE = (
     "attachment",
     "insertion",
@@ -455,7 +468,9 @@ def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high"
         parameters=TissueParameters().edited(tissue_of_life(recipe)),
         fitted_on=person_head(STANDARD),
     )
-    rig = replace(rig, name=name, recipe=recipe)
+    strength = muscle_strength(recipe) / muscle_strength(STANDARD)
+    muscles = tuple(_as_strong(muscle, strength) for muscle in rig.muscles)
+    rig = replace(rig, name=name, recipe=recipe, muscles=muscles)
     return rig if level == "high" else rig.at_level(level)
 
 
@@ -470,6 +485,8 @@ def rig_from_head(
         fitted_on: The head on which the muscles' reaches were fitted, to which they scale.
     """
     left = load_muscles(head, fitted_on)
+    if fitted_on is not None:
+        left = _pulling_as_much(left, head, fitted_on)
     muscles: list[Muscle] = []
     for muscle in left:
         muscles.append(muscle)
@@ -483,6 +500,30 @@ def rig_from_head(
         action_units=load_action_units(),
         emotions=load_emotions(),
     )
+
+
+def _pulling_as_much(left: list[Muscle], head: Head, fitted_on: Head) -> list[Muscle]:
+    """Return `left` with forces such that each pulls as much in all as on the head it fits.
+
+    Forces are a pressure on skin: a small chin, with less skin under the muscle, would be pulled
+    less. But the springs along the skin are no softer on a small face (a triangle's stiffness does
+    not depend on its size), so it needs the same whole force to move as far.
+    """
+    here = whole_pull(head, left)
+    there = whole_pull(fitted_on, load_muscles(fitted_on))
+    shares = np.clip(there / np.maximum(here, 1e-9), *FORCE_SHARES)
+    return [
+        muscle
+        if isinstance(muscle, LidMuscle)
+        else replace(muscle, force_scale=muscle.force_scale * float(share))
+        for muscle, share in zip(left, shares, strict=True)
+    ]
+
+
+def _as_strong(muscle: Muscle, strength: float) -> Muscle:
+    if isinstance(muscle, LidMuscle) or strength == 1.0:
+        return muscle
+    return replace(muscle, force_scale=muscle.force_scale * strength)
 
 
 def _differences(now: Any, old: Any) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from .head import (
     LidContact,
     Part,
 )
-from .identity import Person, people, tissue_of_life
+from .identity import Person, muscle_strength, people, tissue_of_life
 from .mesh import head_from_mesh, read_head
 from .recipe import STANDARD, Recipe, recipe_attributes
 from .skin import LEVELS
@@ -34,6 +34,7 @@ __all__ = [
     "Person",
     "Recipe",
     "head_from_mesh",
+    "muscle_strength",
     "paper_head",
     "people",
     "person_head",

@@ -46,31 +46,42 @@ LIMITS: Mapping[str, tuple[float, float]] = {
         (
             "face_width",
             "face_height",
+            "head_width",
+            "head_length",
+            "head_height",
             "forehead_height",
+            "forehead_width",
             "forehead_slope",
             "brow_ridge",
             "brow_height",
             "eye_spacing",
             "eye_size",
+            "eye_opening",
             "eye_slant",
             "eye_depth",
             "lid_fold",
+            "inner_fold",
             "nose_length",
             "nose_width",
             "nose_projection",
             "nose_bridge",
             "nose_hump",
             "nose_tip",
+            "nose_tip_width",
             "mouth_width",
             "upper_lip",
             "lip_fullness",
+            "lip_balance",
+            "cupid_bow",
             "lip_projection",
+            "mouth_corners",
             "cheekbones",
             "jaw_width",
             "jaw_angle",
             "chin_projection",
             "chin_width",
             "ear_size",
+            "ear_angle",
             "neck_width",
             "weight",
         ),
@@ -104,31 +115,42 @@ class Recipe:
         age: Years, 18 to 90; changes shape, skin and tissue.
         face_width: Width over the cheekbones (zy-zy), standard deviations; so are all to `weight`.
         face_height: Root of the nose to chin (n-gn).
+        head_width: Breadth of the braincase (eu-eu).
+        head_length: Brow to the back of the head (g-op).
+        head_height: How high the crown stands.
         forehead_height: Hairline to root of the nose (tr-n).
+        forehead_width: Over the temples.
         forehead_slope: How far the forehead leans back.
         brow_ridge: How far glabella and brows stand out.
         brow_height: How high the brows stand.
         eye_spacing: Between the inner corners of the eyes (en-en).
         eye_size: Length of the eye fissure (en-ex).
+        eye_opening: Height of the eye fissure (ps-pi): narrow to round.
         eye_slant: How high the outer corner stands over the inner one.
         eye_depth: How deep the eyes lie.
         lid_fold: How low the upper lid's fold hangs over its crease, and over the inner corner.
+        inner_fold: How far a fold of the upper lid hangs over the inner corner (epicanthus).
         nose_length: n-sn.
         nose_width: al-al.
         nose_projection: sn-prn.
         nose_bridge: How high the bridge stands between the eyes.
         nose_hump: How far the back of the nose bows out.
         nose_tip: How far the tip turns up.
+        nose_tip_width: Breadth of the tip, fine to bulbous.
         mouth_width: ch-ch.
         upper_lip: Height of the upper lip (sn-sto).
         lip_fullness: Height of the red of both lips (ls-sto, sto-li).
+        lip_balance: How much fuller the lower lip is than the upper one.
+        cupid_bow: How sharply the upper lip's border bows.
         lip_projection: How far the mouth stands out.
+        mouth_corners: How high the corners of the mouth stand.
         cheekbones: How far the cheekbones stand out forward.
         jaw_width: Over the angles of the jaw (go-go).
         jaw_angle: How far down, out and back the angle of the jaw stands.
         chin_projection: How far the chin stands out.
         chin_width: Breadth of the chin.
         ear_size: Length of the ear (sa-sba).
+        ear_angle: How far the ear stands off the head.
         neck_width: Breadth of the neck.
         weight: Fullness of cheek, jowl and neck.
         skin: Tone, 0 very light to 1 dark; also a name of `SKIN_TONES`.
@@ -148,31 +170,42 @@ class Recipe:
     age: float = 30.0
     face_width: float = 0.0
     face_height: float = 0.0
+    head_width: float = 0.0
+    head_length: float = 0.0
+    head_height: float = 0.0
     forehead_height: float = 0.0
+    forehead_width: float = 0.0
     forehead_slope: float = 0.0
     brow_ridge: float = 0.0
     brow_height: float = 0.0
     eye_spacing: float = 0.0
     eye_size: float = 0.0
+    eye_opening: float = 0.0
     eye_slant: float = 0.0
     eye_depth: float = 0.0
     lid_fold: float = 0.0
+    inner_fold: float = 0.0
     nose_length: float = 0.0
     nose_width: float = 0.0
     nose_projection: float = 0.0
     nose_bridge: float = 0.0
     nose_hump: float = 0.0
     nose_tip: float = 0.0
+    nose_tip_width: float = 0.0
     mouth_width: float = 0.0
     upper_lip: float = 0.0
     lip_fullness: float = 0.0
+    lip_balance: float = 0.0
+    cupid_bow: float = 0.0
     lip_projection: float = 0.0
+    mouth_corners: float = 0.0
     cheekbones: float = 0.0
     jaw_width: float = 0.0
     jaw_angle: float = 0.0
     chin_projection: float = 0.0
     chin_width: float = 0.0
     ear_size: float = 0.0
+    ear_angle: float = 0.0
     neck_width: float = 0.0
     weight: float = 0.0
     skin: float = 0.25

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .ageing import tissue_of_life
+from .ageing import muscle_strength, tissue_of_life
 from .people import Person, people
 from .person import moved_arrays, person_from, with_moved
 from .shape import Warp, warp_of
@@ -11,6 +11,7 @@ __all__ = [
     "Person",
     "Warp",
     "moved_arrays",
+    "muscle_strength",
     "people",
     "person_from",
     "tissue_of_life",

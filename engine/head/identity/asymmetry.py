@@ -9,6 +9,7 @@ Means of healthy faces lie between 0.5 and 1 mm (Ferrario et al. 2001; Djordjevi
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from ...arrays import FloatArray
 from ..recipe import Recipe
@@ -20,7 +21,6 @@ WIDTH_MM = (16.0, 34.0)
 MEAN_MM = 0.55
 """Mean length of the difference over the face at asymmetry 1."""
 _BOX = np.array([[-70.0, -120.0, 10.0], [70.0, 60.0, 105.0]])
-_MIRROR = np.array([-1.0, 1.0, 1.0])
 _STREAM = 0xA5
 
 
@@ -38,21 +38,26 @@ def asymmetry_at(recipe: Recipe, points: FloatArray, anchors: Anchors) -> FloatA
     return np.asarray(size * free * _odd(points, middles, widths, pushes))
 
 
+@njit(cache=True, nogil=True)
 def _odd(
     points: FloatArray, middles: FloatArray, widths: FloatArray, pushes: FloatArray
 ) -> FloatArray:
     """Return the part of the swells that is opposite on the two sides, shape (k, 3)."""
-    image = _swell(points * _MIRROR, middles, widths, pushes) * _MIRROR
-    return np.asarray(0.5 * (_swell(points, middles, widths, pushes) - image))
-
-
-def _swell(
-    points: FloatArray, middles: FloatArray, widths: FloatArray, pushes: FloatArray
-) -> FloatArray:
     total = np.zeros_like(points)
-    for middle, width, push in zip(middles, widths, pushes, strict=True):
-        square = ((points - middle) ** 2).sum(axis=1) / width**2
-        total += np.exp(-0.5 * square)[:, None] * push
+    for i in range(points.shape[0]):
+        for k in range(len(widths)):
+            here = 0.0
+            image = 0.0
+            for axis in range(3):
+                away = points[i, axis] - middles[k, axis]
+                mirrored = away - 2.0 * points[i, axis] if axis == 0 else away
+                here += away * away
+                image += mirrored * mirrored
+            scale = -0.5 / widths[k] ** 2
+            one, other = 0.5 * np.exp(scale * here), 0.5 * np.exp(scale * image)
+            total[i, 0] += (one + other) * pushes[k, 0]
+            total[i, 1] += (one - other) * pushes[k, 1]
+            total[i, 2] += (one - other) * pushes[k, 2]
     return total
 
 

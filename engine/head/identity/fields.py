@@ -6,10 +6,12 @@ to the last bit, and no term has an edge.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from ...arrays import FloatArray
 
@@ -19,6 +21,11 @@ Anchors = Mapping[str, FloatArray]
 
 NEVER = 1.0e9
 """A reach that never ends, mm."""
+ROW = 20
+"""Numbers that a term is told to the kernel in."""
+_BUMP, _RAMP, _LIP = 0.0, 1.0, 2.0
+_FAINT = 60.0
+"""Squared reaches beyond which a bell counts as nothing: below 1e-13."""
 
 
 @dataclass(frozen=True)
@@ -42,22 +49,14 @@ class Bump:
     offset: Vector = (0.0, 0.0, 0.0)
     shear: tuple[tuple[str, str, float], ...] = ()
 
-    def at(self, points: FloatArray, anchors: Anchors) -> FloatArray:
-        """Return the displacement at points (k, 3), mm."""
+    def row(self, amount: float, anchors: Anchors) -> FloatArray:
+        """Return kind, middle, 1 / reach, push, matrix of stretch and shear, shape (ROW,)."""
         middle = anchors[self.anchor] + np.array(self.offset)
-        if abs(middle[0]) < 1e-6:
-            return self._side(points, middle)
-        mirrored = np.array([-1.0, 1.0, 1.0])
-        image = self._side(points * mirrored, middle) * mirrored
-        return np.asarray(self._side(points, middle) + image)
-
-    def _side(self, points: FloatArray, middle: FloatArray) -> FloatArray:
-        away = points - middle
-        weight = np.exp(-0.5 * ((away / np.array(self.reach)) ** 2).sum(axis=1))
-        moved = np.array(self.push) + away * np.array(self.stretch)
-        for along, to, amount in self.shear:
-            moved[:, "xyz".index(to)] += amount * away[:, "xyz".index(along)]
-        return np.asarray(moved * weight[:, None])
+        matrix = np.diag(self.stretch)
+        for along, to, amount_of in self.shear:
+            matrix["xyz".index(to), "xyz".index(along)] += amount_of
+        numbers = [[_BUMP], middle, 1.0 / np.array(self.reach), amount * np.array(self.push)]
+        return _row([*numbers, amount * matrix.ravel(), [float(abs(middle[0]) < 1e-6)]])
 
 
 @dataclass(frozen=True)
@@ -85,18 +84,13 @@ class Ramp:
     offset: Vector = (0.0, 0.0, 0.0)
     plateau: Vector = (0.0, 0.0, 0.0)
 
-    def at(self, points: FloatArray, anchors: Anchors) -> FloatArray:
-        """Return the displacement at points (k, 3), mm."""
+    def row(self, amount: float, anchors: Anchors) -> FloatArray:
+        """Return kind, axis, start, span, ease, push and the window, shape (ROW,)."""
         axis = "xyz".index(self.axis)
         low, high = anchors[self.start][axis], anchors[self.end][axis]
-        span = high - low
-        along = (points[:, axis] - low) / span
-        ease = self.ease / abs(span)
-        rise = ease * (np.logaddexp(0.0, along / ease) - np.logaddexp(0.0, (along - 1) / ease))
-        away = np.abs(points - (anchors[self.anchor] + np.array(self.offset)))
-        away = np.maximum(away - np.array(self.plateau), 0.0) / np.array(self.reach)
-        window = np.exp(-0.5 * (away**2).sum(axis=1))
-        return np.asarray((rise * window)[:, None] * np.array(self.push))
+        middle = anchors[self.anchor] + np.array(self.offset)
+        numbers = [[_RAMP, axis, low, high - low, self.ease], amount * np.array(self.push), middle]
+        return _row([*numbers, self.plateau, 1.0 / np.array(self.reach)])
 
 
 @dataclass(frozen=True)
@@ -116,25 +110,106 @@ class Lip:
     seam: str = "M0_0"
     corner: str = "M1_5"
 
-    def at(self, points: FloatArray, anchors: Anchors) -> FloatArray:
-        """Return the displacement at points (k, 3), mm."""
+    def row(self, amount: float, anchors: Anchors) -> FloatArray:
+        """Return kind, side, height of the lip, push, seam and end of the line, shape (ROW,)."""
         seam, corner = anchors[self.seam], anchors[self.corner]
         size = abs(anchors[self.border][1] - seam[1])
-        away = np.maximum(self.side * (points[:, 1] - seam[1]), 0.0) / size
-        share = np.clip(np.abs(points[:, 0]) / corner[0], 0.0, 1.0)
-        across = (1.0 - share**4) ** 2
-        behind = np.maximum(seam[2] - 8.0 - points[:, 2] - 16.0 * share**2, 0.0) / 6.0
-        weight = away * np.exp(0.5 - 0.5 * away**2) * across * np.exp(-0.5 * behind**2)
         x, y, z = self.push
-        return np.asarray(weight[:, None] * np.array([x, self.side * y, z]))
+        push = amount * np.array([x, self.side * y, z])
+        return _row([[_LIP, self.side, size], push, seam, [corner[0]]])
 
 
 Term = Bump | Ramp | Lip
 
 
+def rows_of(terms: Iterable[tuple[float, Sequence[Term]]], anchors: Anchors) -> FloatArray:
+    """Return what the kernel needs of so much of each field, shape (k, ROW)."""
+    rows = [term.row(amount, anchors) for amount, field in terms for term in field]
+    return np.array(rows).reshape(-1, ROW)
+
+
+def field_of(rows: FloatArray, points: FloatArray) -> FloatArray:
+    """Return the displacement at points (k, 3) that `rows` amount to, mm."""
+    return np.asarray(_field(rows, np.ascontiguousarray(points)))
+
+
 def field_at(terms: Sequence[Term], points: FloatArray, anchors: Anchors) -> FloatArray:
     """Return the sum of `terms` at points (k, 3), mm."""
+    return field_of(rows_of([(1.0, terms)], anchors), points)
+
+
+def _row(numbers: Sequence[Sequence[float] | FloatArray]) -> FloatArray:
+    flat = np.concatenate([np.asarray(part, float) for part in numbers])
+    return np.concatenate([flat, np.zeros(ROW - len(flat))])
+
+
+@njit(cache=True, nogil=True)
+def _field(rows: FloatArray, points: FloatArray) -> FloatArray:
+    """Sum the terms at every point of the left half and mirror them for the right one."""
     total = np.zeros_like(points)
-    for term in terms:
-        total += term.at(points, anchors)
+    here = np.zeros(3)
+    for i in range(points.shape[0]):
+        side = -1.0 if points[i, 0] < 0.0 else 1.0
+        x, y, z = side * points[i, 0], points[i, 1], points[i, 2]
+        here[:] = 0.0
+        for k in range(rows.shape[0]):
+            row = rows[k]
+            if row[0] == _BUMP:
+                _add_bump(row, x, y, z, 1.0, here)
+                if row[19] == 0.0:
+                    _add_bump(row, -x, y, z, -1.0, here)
+            elif row[0] == _RAMP:
+                _add_ramp(row, x, y, z, here)
+            else:
+                _add_lip(row, x, y, z, here)
+        total[i, 0] = side * here[0] if x != 0.0 else 0.0
+        total[i, 1] = here[1]
+        total[i, 2] = here[2]
     return total
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _add_bump(row: FloatArray, x: float, y: float, z: float, side: float, to: FloatArray) -> None:
+    a, b, c = x - row[1], y - row[2], z - row[3]
+    square = (a * row[4]) ** 2 + (b * row[5]) ** 2 + (c * row[6]) ** 2
+    if square < _FAINT:
+        weight = np.exp(-0.5 * square)
+        to[0] += side * weight * (row[7] + row[10] * a + row[11] * b + row[12] * c)
+        to[1] += weight * (row[8] + row[13] * a + row[14] * b + row[15] * c)
+        to[2] += weight * (row[9] + row[16] * a + row[17] * b + row[18] * c)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _add_ramp(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> None:
+    axis = row[1]
+    place = x if axis == 0.0 else y if axis == 1.0 else z
+    along = (place - row[2]) / row[3]
+    square = 0.0
+    for k in range(3):
+        value = x if k == 0 else y if k == 1 else z
+        square += (max(abs(value - row[8 + k]) - row[11 + k], 0.0) * row[14 + k]) ** 2
+    if square < _FAINT:
+        ease = row[4] / abs(row[3])
+        rise = ease * (_softplus(along / ease) - _softplus((along - 1.0) / ease))
+        weight = rise * np.exp(-0.5 * square)
+        to[0] += weight * row[5]
+        to[1] += weight * row[6]
+        to[2] += weight * row[7]
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _add_lip(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> None:
+    away = max(row[1] * (y - row[7]), 0.0) / row[2]
+    share = min(x / row[9], 1.0)
+    behind = max(row[8] - 8.0 - z - 16.0 * share**2, 0.0) / 6.0
+    square = away**2 + behind**2
+    if square < _FAINT:
+        weight = away * np.exp(0.5 - 0.5 * square) * (1.0 - share**4) ** 2
+        to[0] += weight * row[3]
+        to[1] += weight * row[4]
+        to[2] += weight * row[5]
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _softplus(x: float) -> float:
+    return max(x, 0.0) + math.log1p(math.exp(-abs(x)))

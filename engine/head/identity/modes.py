@@ -40,7 +40,10 @@ LIDS: Mapping[str, tuple[Term, ...]] = {
     ),
     "hood": (Bump("E3_6", (9, 5, 9), (0, -1, 0.25)), Bump("E4_6", (12, 7, 12), (0, -0.5, 0))),
     "crease": (Bump("E2_4", (15, 3.4, 6), (0, 0.2, 1)),),
-    "epicanthus": (Bump("E3_1", (4.5, 6, 6), (0.5, -0.7, 0.5), offset=(0.5, -3, -1)),),
+    "epicanthus": (
+        Bump("E3_1", (4.5, 6, 6), (0.5, -0.7, 0.5), offset=(0.5, -3, -1)),
+        Bump("E1_0", (4.2, 5, 6), (0.7, -0.35, 0.6), offset=(-2.2, 2.0, 3)),
+    ),
     "upper_lid": (Bump("E1_4", (13, 5, 9), (0, -1, 0), offset=(1, 1, 0)),),
     "lower_lid": (Bump("E1_11", (12, 4, 9), (0, -1, 0), offset=(1, -1, 0)),),
 }
@@ -67,6 +70,10 @@ FORMS: Mapping[str, tuple[Term, ...]] = {
     "nose_tip": (
         Bump("prn", (11, 9, 13), (0, 1, 0.15)),
     ),
+    "head_height": (Bump("v", (95, 42, 95), (0, 1, 0)),),
+    "size": (Bump("n", (NEVER, NEVER, NEVER), stretch=(0.01, 0.01, 0.01), offset=(0, 0, -60)),),
+    "forehead_width": (Bump("G2_7", (26, 26, 40), (0.55, 0, 0), offset=(4, 0, -14)),),
+    "mouth_corners": (Bump("M1_5", (7, 6, 12), (0, 1, 0), offset=(1, 0, 0)),),
     "nose_tip_width": (Bump("prn", (13, 10, 12), stretch=(0.07, 0, 0), offset=(0, 0, -4)),),
     "nostril_flare": (Bump("A7", (6, 6, 8), (0.8, 0.2, 0.4)),),
     "cheekbones": (Bump("C6_1", (15, 11, 20), (0.5, 0.1, 0.85), offset=(8, 1, -4)),),
@@ -79,6 +86,7 @@ FORMS: Mapping[str, tuple[Term, ...]] = {
     "neck_width": (
         Bump("C8_10", (80, 40, 80), stretch=(0.018, 0, 0.010), offset=(0, -42, -35)),
     ),
+    "lower_cheek": (Bump("C6_4", (20, 17, 30), (0.8, 0, 0.15), offset=(2, -15, -10)),),
     "larynx": (Bump("C8_10", (9, 12, 16), (0, 0, 1), offset=(0, -24, -2)),),
     "ear_length": (Bump("pa", (16, 34, 30), stretch=(0, 0.019, 0.010), offset=(-6, -1, 12)),),
     "ear_out": (Bump("pa", (12, 30, 16), (1, 0, 0), offset=(2, 0, -3)),),
@@ -86,7 +94,7 @@ FORMS: Mapping[str, tuple[Term, ...]] = {
 SOFT: Mapping[str, tuple[Term, ...]] = {
     "cheek": (Bump("C6_4", (17, 17, 26), (0.62, 0, 0.75), offset=(-2, 3, 0)),),
     "mid_cheek": (Bump("C5_2", (13, 10, 18), (0.25, -0.1, 0.95), offset=(2, 3, 0)),),
-    "jowl": (Bump("C7_6", (12, 10, 18), (0.45, -0.9, 0.35), offset=(-9, -9, 16)),),
+    "jowl": (Bump("C7_6", (15, 12, 22), (0.4, -0.7, 0.4), offset=(-12, -10, 18)),),
     "submental": (Bump("C6_10", (32, 15, 28), (0, -1, 0.25), offset=(0, -2, -14)),),
     "neck_soft": (Bump("C8_10", (48, 40, 50), stretch=(0.022, 0, 0.02), offset=(0, -30, -30)),),
     "temple": (Bump("G2_7", (11, 17, 20), (1, 0, 0.2), offset=(3, -9, -9)),),
@@ -100,13 +108,13 @@ SOFT: Mapping[str, tuple[Term, ...]] = {
         Bump("C5_3", (8, 10, 14), (0.1, -0.25, 0.8), offset=(1, -3, 0)),
     ),
     "marionette": (
-        Bump("M4_6", (4.5, 8, 10), (0, 0, -0.9)),
-        Bump("M1_5", (6, 5, 10), (0, -0.6, 0), offset=(2, -2, 0)),
+        Bump("M4_6", (5, 8, 10), (0, 0, -0.8), offset=(0, -2, 0)),
+        Bump("M1_5", (6, 5, 10), (0, -0.15, 0), offset=(2, -2, 0)),
     ),
     "maxilla": (Bump("sn", (24, 16, 28), (0, 0, -1), offset=(0, -3, -8)),),
-    "brow_ptosis": (Bump("E4_6", (16, 9, 18), (0, -1, 0)),),
+    "brow_ptosis": (Bump("E4_5", (22, 9, 18), (0, -1, 0), offset=(2, 0, 0)),),
     "neck_bands": (Bump("C8_10", (5, 26, 20), (0, 0, 1), offset=(11, -26, -2)),),
-    "prejowl": (Bump("C5_8", (8, 8, 14), (-0.2, 0.5, -0.8)),),
+    "prejowl": (Bump("C5_8", (10, 9, 15), (-0.15, 0.3, -0.7)),),
     "lobule": (Bump("sba", (11, 9, 12), (0, -1, 0.1)),),
 }
 

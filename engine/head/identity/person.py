@@ -11,6 +11,7 @@ from ...cache import Arrays
 from ..geometry import vertex_normals
 from ..head import DrawnSurface, Eye, Head, LidContact, Part
 from ..recipe import Recipe
+from .ageing import depth_of_life
 from .asymmetry import asymmetry_at
 from .shape import Warp, warp_of
 
@@ -24,7 +25,7 @@ WITH_THE_EYE = ("eye", "cornea")
 def person_from(reference: Head, recipe: Recipe) -> Head:
     """Return the head of a person.
 
-    All that is a field over the skin (depth, hold, jaw, map, colours, maps) stays as it is on the
+    All that is a field over the skin (hold, jaw, map, colours, maps) stays as it is on the
     built-in head; positions are warped and normals made anew. The tissue is symmetric; what is
     drawn is not quite.
 
@@ -41,6 +42,7 @@ def person_from(reference: Head, recipe: Recipe) -> Head:
     return replace(
         reference,
         points=warp(reference.points),
+        depth=depth_of_life(recipe, reference.depth),
         drawn=_drawn(reference.drawn, warp, recipe, eyes),
         parts=tuple(_part(part, warp, recipe) for part in reference.parts),
         eyes=eyes,
@@ -52,6 +54,7 @@ def moved_arrays(person: Head) -> Arrays:
     """Return what sets a person's head apart from the built-in one, to be kept."""
     arrays: Arrays = {
         "points": person.points,
+        "depth": person.depth,
         "teeth": person.teeth,
         "vertices": person.drawn.vertices,
         "normals": person.drawn.normals,
@@ -73,6 +76,7 @@ def with_moved(reference: Head, arrays: Arrays) -> Head:
     return replace(
         reference,
         points=numbers["points"],
+        depth=numbers["depth"],
         teeth=numbers["teeth"],
         drawn=replace(
             drawn,

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ...arrays import FloatArray
 from ..head import Head
 from ..recipe import Recipe
-from .fields import Anchors, field_at
+from .fields import Anchors, field_at, field_of, rows_of
 from .fit import amplitudes_of
 from .modes import LIDS, MODES
 
@@ -18,6 +19,8 @@ RIGID_RADIUS = 15.2
 """Within this distance of the eye's centre all of the eye moves as one piece, mm."""
 FREE_RADIUS = 36.0
 """Beyond it the eye's motion is not felt, mm."""
+FAR_RADIUS = 3.0 * FREE_RADIUS
+"""Beyond it nothing that moves the lids is felt, mm."""
 BALL_RADIUS = 13.5
 """Within this distance lids keep theirs from the eye's centre, mm; beyond, less and less."""
 LOOSE_RADIUS = 16.5
@@ -47,20 +50,17 @@ class Warp:
         """Return where points (k, 3) of the built-in head lie on the person, mm."""
         if self.is_identity:
             return points
-        moved = points + self._whole(points)
         eye = self.anchors["eye"]
-        side = np.where(points[:, :1] < 0, _MIRROR, 1.0)
-        offset = points * side - eye
-        distance = np.linalg.norm(offset, axis=1)
-        rigid = _ease((FREE_RADIUS - distance) / (FREE_RADIUS - RIGID_RADIUS))[:, None]
-        shift = self.eye_shift
-        moved = moved + rigid * (points + shift * side - moved)
-        return self._lids(points, moved, eye + shift, side, distance)
+        near = np.abs(np.abs(points[:, 0]) - eye[0]) < FAR_RADIUS
+        near &= np.abs(points[:, 1:] - eye[1:]).max(axis=1) < FAR_RADIUS
+        lids = np.zeros_like(points)
+        lids[near] = field_of(self._rows(True), points[near])
+        return placed(points, field_of(self._rows(False), points), lids, self.eye_shift, eye)
 
-    @property
+    @cached_property
     def eye_shift(self) -> FloatArray:
         """How far the left eyeball moves, mm, shape (3,); the right one moves as its image."""
-        return np.asarray(self._whole(self.anchors["eye"][None, :])[0])
+        return np.asarray(field_of(self._rows(False), self.anchors["eye"][None, :])[0])
 
     def teeth_shift(self) -> FloatArray:
         """How far teeth and tongue move: as the line where the lips meet, mm, shape (3,)."""
@@ -69,39 +69,47 @@ class Warp:
         shift[0] = 0.0
         return np.asarray(shift)
 
-    def _whole(self, points: FloatArray) -> FloatArray:
-        """Return the displacement that moves eyes as a whole, mm."""
-        total = np.zeros_like(points)
-        for name, amplitude in self.amplitudes.items():
-            if name not in LIDS and amplitude:
-                total += amplitude * field_at(MODES[name], points, self.anchors)
-        return total
+    def _rows(self, lids: bool) -> FloatArray:
+        """Return the terms of what moves the lids, or of all that moves eyes as a whole."""
+        terms = [
+            (amplitude, MODES[name])
+            for name, amplitude in self.amplitudes.items()
+            if amplitude and (name in LIDS) == lids
+        ]
+        return rows_of(terms, self.anchors)
 
-    def _lids(
-        self,
-        points: FloatArray,
-        moved: FloatArray,
-        center: FloatArray,
-        side: FloatArray,
-        distance: FloatArray,
-    ) -> FloatArray:
-        """Return `moved` with the lids moved over the ball, at the distance they had from it."""
-        near = np.flatnonzero(distance < 3.0 * FREE_RADIUS)
-        total = np.zeros((len(near), 3))
-        for name in LIDS:
-            amplitude = self.amplitudes.get(name, 0.0)
-            if amplitude:
-                total += amplitude * field_at(LIDS[name], points[near], self.anchors)
-        result = moved.copy()
-        result[near] += total
-        close = distance < LOOSE_RADIUS
-        offset = result[close] * side[close] - center
-        length = np.linalg.norm(offset, axis=1)
-        kept = _ease((LOOSE_RADIUS - distance[close]) / (LOOSE_RADIUS - BALL_RADIUS))
-        wanted = length + kept * (distance[close] - length)
-        wanted = np.maximum(wanted, np.minimum(distance[close], LEAST_RADIUS))
-        result[close] = (center + offset * (wanted / length)[:, None]) * side[close]
-        return result
+
+def placed(
+    points: FloatArray, whole: FloatArray, lids: FloatArray, shift: FloatArray, eye: FloatArray
+) -> FloatArray:
+    """Return where points (k, 3) come to lie.
+
+    Args:
+        points: On the built-in head, mm.
+        whole: Displacement by all that moves an eye as a whole, mm, shape (k, 3).
+        lids: Displacement by what moves the lids over the ball, mm, shape (k, 3).
+        shift: Of the left eye as a whole, mm, shape (3,).
+        eye: Centre of the left eye on the built-in head, mm, shape (3,).
+    """
+    moved = points + whole
+    folded = np.column_stack([np.abs(points[:, 0]), points[:, 1:]])
+    near = np.flatnonzero(np.abs(folded - eye).max(axis=1) < FREE_RADIUS)
+    here = points[near]
+    side = np.where(here[:, :1] < 0, _MIRROR, 1.0)
+    offset = here * side - eye
+    distance = np.linalg.norm(offset, axis=1)
+    rigid = _ease((FREE_RADIUS - distance) / (FREE_RADIUS - RIGID_RADIUS))[:, None]
+    moved[near] += rigid * (here + shift * side - moved[near])
+    moved += lids
+    inner = distance < LOOSE_RADIUS
+    close, distance, side = near[inner], distance[inner], side[inner]
+    offset = moved[close] * side - (eye + shift)
+    length = np.linalg.norm(offset, axis=1)
+    kept = _ease((LOOSE_RADIUS - distance) / (LOOSE_RADIUS - BALL_RADIUS))
+    wanted = length + kept * (distance - length)
+    wanted = np.maximum(wanted, np.minimum(distance, LEAST_RADIUS))
+    moved[close] = (eye + shift + offset * (wanted / length)[:, None]) * side
+    return moved
 
 
 def warp_of(recipe: Recipe, reference: Head) -> Warp:
@@ -115,8 +123,19 @@ def warp_of(recipe: Recipe, reference: Head) -> Warp:
     landmarks = {name: reference.drawn.vertices[i] for name, i in reference.landmarks.items()}
     names, places = list(landmarks), np.array(list(landmarks.values()))
 
+    # Every mode moves a place in proportion: so its effect on each landmark is found once.
+    eye = anchors["eye"]
+    probed = np.vstack([places, eye])
+    effects = {name: field_at(terms, probed, anchors) for name, terms in MODES.items()}
+
     def warped(amplitudes: Mapping[str, float]) -> dict[str, FloatArray]:
-        return dict(zip(names, Warp(amplitudes, anchors)(places), strict=True))
+        whole, lids = np.zeros_like(probed), np.zeros_like(probed)
+        for name, amplitude in amplitudes.items():
+            if name in LIDS:
+                lids += amplitude * effects[name]
+            else:
+                whole += amplitude * effects[name]
+        return dict(zip(names, placed(places, whole[:-1], lids[:-1], whole[-1], eye), strict=True))
 
     return Warp(amplitudes_of(recipe, warped), anchors)
 
