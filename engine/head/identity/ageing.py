@@ -65,11 +65,11 @@ _FEMALE_PER_FULL_AGE: Mapping[str, float] = {
     "mid_cheek": 0.5,
     "eye_depth": -0.3,
     "ear_length": -1.5,
-    "jowl": -0.6,
-    "marionette": -0.3,
+    "jowl": -1.3,
+    "marionette": -0.8,
     "neck_bands": -0.5,
     "chin_projection": -0.5,
-    "mouth_corners": 0.5,
+    "mouth_corners": 0.9,
 }
 """What is otherwise in a woman's ageing: bone changes less about the brow, fat stays longer."""
 
@@ -103,7 +103,7 @@ _FEMALE: Mapping[str, float] = {
     "mid_cheek": 0.9,
     "cheek": -0.3,
     "cupid": 0.9,
-    "mouth_corners": 0.5,
+    "mouth_corners": 1.0,
     "chin_projection": -0.8,
     "chin_width": -2.8,
     "jaw_angle": -2.8,
