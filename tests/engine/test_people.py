@@ -8,8 +8,10 @@ import pytest
 from engine import Keyframe, Recipe, people, rig_from_recipe
 from engine.measure import measure_units, settle
 
-SHARE_IN_RANGE = 0.8
-"""Least share of landmarks that move within the range of human faces, on everybody."""
+NEAR = 0.15
+"""Share of a range's ends by which a face that is larger or smaller may pass them."""
+MOST_OUTSIDE = 2
+"""Landmarks of 24 that may still lie outside: slack old brows draw together farther."""
 
 
 @pytest.mark.parametrize("name", people())
@@ -18,8 +20,14 @@ def test_every_unit_moves_the_right_way_and_most_within_human_range(name: str) -
     measured = measure_units(rig, seconds=0.5)
     wrong = [(m.landmark.unit, m.landmark.what, m.value) for m in measured if not m.direction_right]
     assert not wrong
-    outside = [(m.landmark.unit, m.landmark.what, m.value) for m in measured if not m.in_range]
-    assert len(outside) <= (1.0 - SHARE_IN_RANGE) * len(measured), outside
+    outside = [
+        (m.landmark.unit, m.landmark.what, m.value)
+        for m in measured
+        if not m.landmark.low - NEAR * abs(m.landmark.low)
+        <= m.value
+        <= (1.0 + NEAR) * m.landmark.high
+    ]
+    assert len(outside) <= MOST_OUTSIDE, outside
 
 
 @pytest.mark.parametrize("sex", ["female", "male"])
