@@ -150,6 +150,7 @@ class Rig:
             head.polygons,
             head.depth,
             head.anchor_weight,
+            head.jaw_weight,
             head.drawn.vertices,
             head.drawn.colors,
             self.parameters,

@@ -26,8 +26,7 @@ PART_ARRAYS = ("vertices", "normals", "triangles", "colors", "roots", "hair", "u
 
 def source_key(*parts: object) -> str:
     """Return a hash of `parts`, of the authored data and of all code that makes heads from it."""
-    files = sorted(_source_files(resources.files(__package__)))
-    return content_key(*parts, *(content for _, content in files))
+    return content_key(*parts, _SOURCES)
 
 
 def _source_files(folder: resources.abc.Traversable) -> list[tuple[str, bytes]]:
@@ -38,6 +37,12 @@ def _source_files(folder: resources.abc.Traversable) -> list[tuple[str, bytes]]:
         elif entry.name.endswith((".py", ".json")):
             found.append((entry.name, entry.read_bytes()))
     return found
+
+
+# Read with the code itself: what a running process makes is not what a later source would make.
+_SOURCES = content_key(
+    *(content for _, content in sorted(_source_files(resources.files(__package__))))
+)
 
 
 def head_to_arrays(head: Head) -> Arrays:
