@@ -36,7 +36,7 @@ sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 280
 	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 400 --columns 3 \
 		--only happiness,sadness,fear,anger,surprise,disgust
-	$(BIN)/risorius sheet -o docs/people.jpg --people --only rest \
+	$(BIN)/risorius sheet -o docs/people.jpg --people --only rest --whole \
 		--view front,three-quarter,profile --size 240 --columns 6
 	$(BIN)/risorius sheet -o docs/closeups.jpg --rig standard,mei,ruth,kwame --only rest \
 		--view eye,mouth,ear,profile --size 300 --columns 4
@@ -44,8 +44,8 @@ sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 # The people's pictures in the viewer.
 portraits: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	@mkdir -p static/public/people
-	$(BIN)/risorius sheet -o static/public/people --people --only rest --view front --size 144
-	$(BIN)/risorius sheet -o static/public/people --rig standard,paper --only rest --view front --size 144
+	$(BIN)/risorius sheet -o static/public/people --people --only rest --whole --view front --size 144
+	$(BIN)/risorius sheet -o static/public/people --rig standard,paper --only rest --whole --view front --size 144
 
 # Chromium for the browser test: the system's, else Debian's, else Playwright's own.
 chromium: $(STAMPS)/python-dev

@@ -167,12 +167,19 @@ def sheet(
     only: Annotated[
         str, typer.Option(help="Names to show, comma separated: AU12,happiness,rest,6C+12D.")
     ] = "",
+    whole: Annotated[
+        bool, typer.Option("--whole", help="Show the head, not the face alone.")
+    ] = False,
 ) -> None:
     """Draw every action unit and emotion, as the viewer shows them, on one picture."""
     from .sheet import Plan, SheetRefused, draw_sheet
 
     plan = Plan(
-        rigs=() if people else _words(rig), views=_words(view), only=_words(only), size=size
+        rigs=() if people else _words(rig),
+        views=_words(view),
+        only=_words(only),
+        size=size,
+        whole=whole,
     )
     progress = Progress(TextColumn("{task.description}"), BarColumn(), console=_console)
     try:

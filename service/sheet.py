@@ -68,12 +68,14 @@ class Plan:
         views: Of `VIEWS`, or degrees to the side such as "25" and "-50".
         only: Labels of the poses; all when empty.
         size: Side of a picture [pixels].
+        whole: Show the head with its hair and neck, not the face alone.
     """
 
     rigs: Sequence[str]
     views: Sequence[str]
     only: Sequence[str]
     size: int
+    whole: bool = False
 
 
 def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
@@ -103,7 +105,7 @@ def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
         settings = Settings(data_dir=Path(folder), host="127.0.0.1", api_keys=())
         try:
             with running(create_app(settings), settings) as url, chromium() as browser:
-                side = round(plan.size * _ROOM)
+                side = plan.size if plan.whole else round(plan.size * _ROOM)
                 page = browser.new_page(viewport={"width": side, "height": side})
                 pictures = list(_photograph(page, url, plan, show))
         except NoBrowser as error:
@@ -188,7 +190,8 @@ def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[
                 named = [rig] * (len(rigs) > 1) + [view] * (len(plan.views) > 1)
                 if len(poses) > 1 or not named:
                     named.insert(len(rigs) > 1, pose.label)
-                yield " ".join(named), page.screenshot(clip=_frame_of(_side(page), view))
+                whole = plan.whole or view in CLOSE_UPS
+                yield " ".join(named), page.screenshot(clip=_frame_of(_side(page), whole))
         _call(page, "DELETE", f"{url}/api/sessions/{session}")
 
 
@@ -196,9 +199,9 @@ def _side(page: Page) -> float:
     return float((page.viewport_size or {"width": 0})["width"])
 
 
-def _frame_of(side: float, view: str) -> FloatRect:
-    """Return the part of a square page that is the picture: of a head, from hairline to chin."""
-    if view in CLOSE_UPS:
+def _frame_of(side: float, whole: bool) -> FloatRect:
+    """Return the part of a square page that is the picture: all, or from hairline to chin."""
+    if whole:
         return {"x": 0.0, "y": 0.0, "width": side, "height": side}
     shown = side / _ROOM
     return {"x": (side - shown) / 2.0, "y": _ABOVE * side, "width": shown, "height": shown}

@@ -68,7 +68,7 @@ def test_a_picture_in_a_folder_is_named_after_its_label() -> None:
 
 
 def test_a_head_s_picture_is_cut_to_its_face_and_a_close_up_is_whole() -> None:
-    assert _frame_of(402.0, "eye") == {"x": 0.0, "y": 0.0, "width": 402.0, "height": 402.0}
-    face = _frame_of(402.0, "-25")
+    assert _frame_of(402.0, True) == {"x": 0.0, "y": 0.0, "width": 402.0, "height": 402.0}
+    face = _frame_of(402.0, False)
     assert face["width"] == face["height"] == pytest.approx(300.0)
     assert face["x"] == pytest.approx(51.0)

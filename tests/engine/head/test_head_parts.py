@@ -47,7 +47,9 @@ def test_nothing_is_missing(head: Head) -> None:
         "brows",
         "lashes",
         "hair",
+        "hairline",
         "flyaways",
+        "baby_hairs",
     }
 
 
