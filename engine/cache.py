@@ -7,10 +7,14 @@ import os
 import tempfile
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+
+MOST_BYTES = 1_000_000_000
+"""Size that the folder's arrays may reach: some hundred people, at all levels."""
 
 Arrays = dict[str, npt.NDArray[np.generic]]
 
@@ -63,7 +67,10 @@ def cached_arrays(kind: str, key: str, build: Callable[[], Arrays]) -> Arrays:
 def _read(path: Path) -> Arrays | None:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-            return {name: arrays[name] for name in arrays.files}
+            stored = {name: arrays[name] for name in arrays.files}
+        with suppress(OSError):
+            os.utime(path)  # What is asked for stays; see `_forget_oldest`.
+        return stored
     except (OSError, ValueError, EOFError, zipfile.BadZipFile, KeyError):
         return None
 
@@ -75,5 +82,16 @@ def _write(path: Path, arrays: Arrays) -> None:
         with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
             np.savez(file, allow_pickle=False, **arrays)
         os.replace(file.name, path)
+        _forget_oldest(path.parent)
     except OSError:
         return
+
+
+def _forget_oldest(folder: Path) -> None:
+    """Remove the arrays that were asked for longest ago, beyond `MOST_BYTES`."""
+    files = [(file.stat(), file) for file in folder.glob("*.npz")]
+    size = 0
+    for stat, file in sorted(files, key=lambda entry: entry[0].st_mtime, reverse=True):
+        size += stat.st_size
+        if size > MOST_BYTES:
+            file.unlink(missing_ok=True)

@@ -157,6 +157,10 @@ class NewRig(Body):
     muscles: Changes | None = None
     action_units: Changes | None = None
     emotions: Changes | None = None
+    passing: StrictBool = Field(
+        default=False,
+        description="Whether it is one step of an edit: it may go once no session is on it.",
+    )
 
 
 class KeyframeBody(Controls):

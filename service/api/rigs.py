@@ -31,8 +31,8 @@ async def list_rigs(parts: Parts) -> dict[str, Any]:
 async def derive_rig(body: NewRig, parts: Parts, response: Response) -> dict[str, Any]:
     """Derive a rig: the same changes of the same rig always give the same id."""
     base = await parts.rigs.get(body.base)
-    changes = body.model_dump(exclude={"base"}, exclude_none=True)
-    rig, created = await parts.rigs.derive(base, changes)
+    changes = body.model_dump(exclude={"base", "passing"}, exclude_none=True)
+    rig, created = await parts.rigs.derive(base, changes, passing=body.passing)
     response.status_code = 201 if created else 200
     response.headers["Location"] = f"/api/rigs/{rig.id}"
     return rig.describe()

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from engine import cache
 from engine.cache import cached_arrays
 
 
@@ -21,3 +25,16 @@ def test_what_is_read_has_the_layout_of_what_was_built(tmp_path, monkeypatch: py
         assert array.flags.c_contiguous
         assert read[name].flags.c_contiguous
         assert np.array_equal(array, read[name])
+
+
+def test_what_was_asked_for_longest_ago_makes_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RISORIUS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(cache, "MOST_BYTES", 25_000)
+    for age, name in enumerate(("new", "old", "middle")):
+        cached_arrays("grid", name, lambda: {"values": np.zeros(1000)})
+        os.utime(tmp_path / f"grid-{name}.npz", (1000 - age, 1000 - age))
+    os.utime(tmp_path / "grid-old.npz", (1, 1))
+    cached_arrays("grid", "newest", lambda: {"values": np.zeros(1000)})
+    assert {file.stem for file in tmp_path.iterdir()} == {"grid-new", "grid-middle", "grid-newest"}
