@@ -28,6 +28,7 @@ from .head import (
     person_head,
     tissue_of_life,
 )
+from .head.storage import source_key
 from .jaw import JawHinge
 from .muscle import LidMuscle, Muscle, SphincterMuscle, mirrored
 from .rig_data import load_action_units, load_emotions, load_muscles
@@ -146,6 +147,7 @@ class Rig:
             return self.content_id
         head = self.head
         return content_key(
+            source_key(),
             head.points,
             head.polygons,
             head.depth,

@@ -29,6 +29,8 @@ Scale = Literal["linear", "banded"]
 
 _DEPTH_LIMIT = 8
 _ITEM_LIMIT = 20_000
+_MOST = 2**32 - 1
+"""Greatest number in a change: a seed may be any of 32 bits."""
 
 
 def _bounded(value: JsonValue) -> JsonValue:
@@ -43,8 +45,8 @@ def _bounded(value: JsonValue) -> JsonValue:
         if isinstance(item, bool):
             continue
         # Compared, not converted: an integer of 400 digits has no float. NaN compares false.
-        if isinstance(item, (int, float)) and not abs(item) <= 1e9:
-            raise ValueError("numbers are finite and at most 1e9")
+        if isinstance(item, (int, float)) and not abs(item) <= _MOST:
+            raise ValueError("numbers are finite and below 2^32")
         if isinstance(item, dict):
             pending += [(child, depth + 1) for child in item.values()]
         elif isinstance(item, list):

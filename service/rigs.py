@@ -72,8 +72,7 @@ def export_tag(rig: Rig, level: str, *, textured: bool) -> str:
         Unprocessable: If there is no such level.
     """
     tag = tag_of(rig, level)
-    # The maps are this engine's, so a client asks again after an update.
-    return f"{tag}-{_engine_stamp()}" if textured and texture_names(rig) else tag
+    return tag if textured or not texture_names(rig) else f"{tag}-bare"
 
 
 def _person_key(rig: Rig) -> str:
@@ -216,10 +215,12 @@ class Rigs:
 
     def texture_tag(self, rig: Rig, file: str) -> str:
         """Return what names one of a rig's textures as this engine bakes it."""
-        return f"{rig.id}-{file}-{_engine_stamp()}"
+        return f"{rig.id}-{file}"
 
     async def textures(self, rig: Rig) -> Mapping[str, bytes]:
         """Return a rig's textures by file name, baked in the background when nobody has."""
+        if not texture_names(rig):
+            return {}
         return await self._textures.get(_person_key(rig), lambda: self._baked(rig))
 
     def bake(self, rig: Rig) -> None:

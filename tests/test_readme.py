@@ -60,7 +60,7 @@ def shell(script: str, folder: Path) -> str:
 
 def test_the_shell_examples_drive_a_face(url: str, tmp_path: Path) -> None:
     examples = [block for block in blocks("sh") if "curl" in block]
-    assert len(examples) == 2
+    assert len(examples) == 3
     script = "\n".join(examples).replace("localhost:8000", url.removeprefix("http://"))
     said = shell(script, tmp_path)
     assert '"recipe"' in said

@@ -182,7 +182,9 @@ def _skullcap(sculpture: Sculpture, tissue: TissueSurface) -> list[Part]:
         hair=whole.hair[used],
     )
     still = replace(whole, map=sp.csr_array((len(whole.vertices), len(tissue.cage_points))))
-    return [back, *hair_parts(still)]
+    # The mask does not reach the hairline, so all hair keeps still with the skull.
+    hair = [replace(part, follows="skull", roots=None) for part in hair_parts(still)]
+    return [back, *hair]
 
 
 def _assembled(

@@ -15,8 +15,7 @@ IMAGES: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "An image.",
         "content": {
-            kind: {"schema": {"type": "string", "format": "binary"}}
-            for kind in ("image/jpeg", "image/png")
+            kind: {"schema": {"type": "string", "format": "binary"}} for kind in ("image/jpeg",)
         },
     },
     304: {"description": "The client has it already."},
@@ -25,13 +24,13 @@ IMAGES: dict[int | str, dict[str, Any]] = {
 
 @router.get("/{rig}/textures/{file}", responses=IMAGES, response_class=Response)
 async def texture(rig: str, file: str, parts: Parts, request: Request) -> Response:
-    """Return one of the maps of a rig's skin, eyes and hair; the first request waits for all."""
+    """Return one of the maps of a rig's skin and eyes; the first request waits for all."""
     found = await parts.rigs.get(rig)
     known = parts.rigs.texture_names(found)
     if file not in known:
         raise NotFound("unknown_texture", f"rig {rig!r} has no texture {file!r}", known=known)
     tag = parts.rigs.texture_tag(found, file)
-    kind = "image/png" if file.endswith(".png") else "image/jpeg"
+    kind = "image/jpeg"
     if client_has(request, tag):
         return tagged(request, b"", tag, kind)
     return tagged(request, (await parts.rigs.textures(found))[file], tag, kind)

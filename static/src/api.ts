@@ -79,13 +79,17 @@ export class Api {
   }
 
   /** The rig of a person who looks like this, kept as long as a session is on it. */
-  person(recipe: Recipe): Promise<{ id: string }> {
-    return this.json('POST', 'api/rigs', { recipe, passing: true }) as Promise<{ id: string }>;
+  person(base: string, recipe: Recipe): Promise<{ id: string }> {
+    return this.json('POST', 'api/rigs', { base, recipe, passing: true }) as Promise<{
+      id: string;
+    }>;
   }
 
   /** A person made by chance; the same seed makes the same one. */
   stranger(seed: number): Promise<{ id: string }> {
-    return this.json('POST', 'api/rigs', { recipe: { sample: seed }, passing: true }) as Promise<{ id: string }>;
+    return this.json('POST', 'api/rigs', { recipe: { sample: seed }, passing: true }) as Promise<{
+      id: string;
+    }>;
   }
 
   openSession(rig: string): Promise<SessionInfo> {

@@ -21,6 +21,7 @@ import { ViewerState } from './state/viewer.svelte';
 import './style.css';
 import { debounce } from './throttle';
 import { TickRate } from './tick-rate';
+import type { Recipe } from './recipe';
 import { readPageOptions } from './url';
 
 const page = readPageOptions(window.location.search);
@@ -32,6 +33,9 @@ viewer.view = page.view;
 document.body.classList.toggle('bare', page.bare);
 
 const PERSON_PAUSE_MS = 350;
+/** What was asked of the person on the stage since they were made; the rest follows sex and age. */
+let wished: Recipe = {};
+let wishes = 0;
 /** How many strangers there are to meet; any seed below 2^32 is one. */
 const STRANGERS = 2 ** 32;
 
@@ -268,6 +272,7 @@ const actions: Actions = {
   setPerson(attribute, value) {
     if (viewer.recipe === null) return;
     viewer.recipe[attribute] = value;
+    wished[attribute] = value;
     becomePerson();
   },
   meetStranger() {
@@ -294,12 +299,14 @@ const actions: Actions = {
   },
 };
 
-/** Make the person that the panel describes, once its sliders rest. */
+/** Make the person that the panel asks for, once its sliders rest; the newest wish counts. */
 const becomePerson = debounce(() => {
-  if (viewer.recipe === null) return;
+  const asked = ++wishes;
   api
-    .person({ ...viewer.recipe })
+    .person(rigId, { ...wished })
     .then(({ id }) => {
+      if (asked !== wishes) return;
+      wished = {};
       actions.switchRig(id);
     })
     .catch(sayWhy);

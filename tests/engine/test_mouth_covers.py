@@ -96,7 +96,7 @@ def test_a_tooth_before_the_lips_would_be_found(standard_rig: Rig) -> None:
     start = head.drawn.vertices[[lips, lips]] + [[0.0, 0.0, 2.0], [0.0, 0.0, -12.0]]
     way = np.tile([0.0, 0.0, -REACH], (2, 1))
     found = behind(start, way, head.drawn.vertices, head.drawn.triangles)
-    assert found.tolist()[0]
+    assert found.tolist() == [True, False]
 
 
 def test_nothing_of_the_mouth_comes_through_the_skin(standard_rig: Rig) -> None:

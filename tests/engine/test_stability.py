@@ -105,6 +105,7 @@ def test_moving_faces_keep_a_margin_to_the_bound(standard_rig):
         simulator.step()
         if tick in (8, 20, 39):
             fastest = max(fastest, *(fastest_mode(simulator, s) for s in simulator._faces.values()))
-    # 532 rad/s in a wide open mouth, where the fat stands stretched; 515 at rest.
-    assert 0.95 * omega < fastest < SAFETY * omega
+    # 524 rad/s in a wide open mouth, where the fat stands stretched; masses are made for 600, so
+    # that thin columns may harden.
+    assert 0.85 * omega < fastest < SAFETY * omega
     assert longest_step(fastest, 40.0, "rk2") > 1.0 / (60.0 * simulator.assembly.substeps)

@@ -12,7 +12,9 @@ from service.latest_first import LatestFirst
 
 def test_what_was_asked_last_is_done_first() -> None:
     pool, go, done = LatestFirst("test"), threading.Event(), []
-    pool.submit(go.wait)
+    started = threading.Event()
+    pool.submit(lambda: (started.set(), go.wait()))
+    assert started.wait(5)
     waiting = [pool.submit(done.append, number) for number in range(3)]
     go.set()
     for future in waiting:

@@ -128,7 +128,7 @@ def _drawn(drawn: DrawnSurface, warp: Warp, recipe: Recipe, eyes: tuple[Eye, ...
 
 def _normals(drawn: DrawnSurface, vertices: FloatArray) -> FloatArray:
     """Return normals over the welded skin, so that no seam of the texture shows."""
-    seams = getattr(drawn, "seams", None)
+    seams = drawn.seams
     if seams is None:
         return vertex_normals(vertices, drawn.triangles)
     return np.asarray(vertex_normals(vertices, seams[drawn.triangles])[seams])
