@@ -73,22 +73,6 @@ def grid_triangles(rows: int, columns: int, *, closed: bool) -> IntArray:
     return pairs.reshape(-1, 3)
 
 
-def unit_sphere(rows: int, columns: int) -> Mesh:
-    """Return a sphere of radius 1 about the origin, its poles on the z axis."""
-    polar = np.linspace(0, np.pi, rows + 1)[:, None]
-    around = np.linspace(0, 2 * np.pi, columns, endpoint=False)[None, :]
-    vertices = np.stack(
-        [
-            np.sin(polar) * np.cos(around),
-            np.sin(polar) * np.sin(around),
-            np.cos(polar) * np.ones_like(around),
-        ],
-        axis=2,
-    ).reshape(-1, 3)
-    triangles = grid_triangles(rows + 1, columns, closed=True)
-    return vertices, without_slivers(vertices, triangles)
-
-
 def joined(pieces: Sequence[Mesh]) -> Mesh:
     """Return one mesh of several."""
     starts = np.cumsum([0, *(len(vertices) for vertices, _ in pieces[:-1])])

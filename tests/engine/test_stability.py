@@ -12,7 +12,7 @@ from engine import Keyframe, Model, Rig, Simulator
 from engine.dynamics import static_forces
 from engine.rig import MODEL_CHOICES
 from engine.simulator import FaceState
-from engine.stability import SAFETY, longest_step
+from engine.stability import SAFETY, largest_frequency, longest_step
 
 FORMS = list(product(MODEL_CHOICES["integrator"], MODEL_CHOICES["springs"]))
 MIXES = 100
@@ -105,7 +105,9 @@ def test_moving_faces_keep_a_margin_to_the_bound(standard_rig):
         simulator.step()
         if tick in (8, 20, 39):
             fastest = max(fastest, *(fastest_mode(simulator, s) for s in simulator._faces.values()))
-    # 524 rad/s in a wide open mouth, where the fat stands stretched; masses are made for 600, so
-    # that thin columns may harden.
-    assert 0.85 * omega < fastest < SAFETY * omega
+    # 524 rad/s in a wide open mouth, where the fat stands stretched; 510 at rest. Masses are made
+    # for 600 where columns may harden, so the linear view is what must be near the truth.
+    assembly = simulator.assembly
+    linear = largest_frequency(assembly.tissue.arrays, assembly.tissue.layers.normals)
+    assert 0.95 * linear < fastest < SAFETY * omega
     assert longest_step(fastest, 40.0, "rk2") > 1.0 / (60.0 * simulator.assembly.substeps)

@@ -11,13 +11,27 @@ from collections.abc import Mapping
 
 from .fields import NEVER, Bump, Lip, Ramp, Term
 
-_FRONT = {"anchor": "sn", "reach": (NEVER, NEVER, 26.0), "plateau": (0.0, 0.0, 92.0)}
+
+def _in_front(start: str, end: str, ease: float) -> Ramp:
+    """Return what pushes down all that lies below a stretch of the face, and not the back."""
+    return Ramp(
+        start,
+        end,
+        "y",
+        (0, -1, 0),
+        ease,
+        anchor="sn",
+        reach=(NEVER, NEVER, 26.0),
+        plateau=(0.0, 0.0, 92.0),
+    )
+
+
 """The face, fading out behind the ears: window of what moves everything below a height."""
 
 MEASURED: Mapping[str, tuple[Term, ...]] = {
-    "nose_length": (Ramp("n", "sn", "y", (0, -1, 0), 5.0, **_FRONT),),  # type: ignore[arg-type]
-    "upper_lip": (Ramp("sn", "M0_0", "y", (0, -1, 0), 3.0, **_FRONT),),  # type: ignore[arg-type]
-    "lower_face": (Ramp("M0_10", "gn", "y", (0, -1, 0), 5.0, **_FRONT),),  # type: ignore[arg-type]
+    "nose_length": (_in_front("n", "sn", 5.0),),
+    "upper_lip": (_in_front("sn", "M0_0", 3.0),),
+    "lower_face": (_in_front("M0_10", "gn", 5.0),),
     "forehead": (Bump("tr", (70, 26, 60), (0, 1, -0.25)),),
     "face_width": (Bump("W9_2", (34, 36, 42), (0.5, 0, 0)),),
     "jaw_width": (Bump("W15_3", (30, 26, 34), (0.5, 0, 0)),),

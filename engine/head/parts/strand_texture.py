@@ -15,7 +15,6 @@ from PIL import Image
 
 from ...arrays import FloatArray
 
-FILE_NAME = "hair.png"
 WIDTH, HEIGHT = 768, 320
 SEED = 5
 LEVELS = 16
