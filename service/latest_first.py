@@ -16,9 +16,15 @@ _NICENESS = 10
 
 
 class LatestFirst(Executor):
-    """One thread that takes the newest job: somebody who has just arrived waits for it now."""
+    """One thread that takes the newest job: somebody who has just arrived waits for it now.
 
-    def __init__(self, name: str) -> None:
+    Args:
+        name: Of the thread.
+        most: How many jobs may wait; beyond it the one that waits longest is cancelled.
+    """
+
+    def __init__(self, name: str, *, most: int) -> None:
+        self._most = most
         self._jobs: list[_Job] = []
         self._changed = threading.Condition()
         self._closed = False
@@ -35,9 +41,12 @@ class LatestFirst(Executor):
             if self._closed:
                 raise RuntimeError("cannot schedule new futures after shutdown")
             self._jobs.append((future, lambda: fn(*args, **kwargs)))
+            too_many, self._jobs = self._jobs[: -self._most], self._jobs[-self._most :]
             self._changed.notify()
             if not self._thread.is_alive():
                 self._thread.start()
+        for old, _ in too_many:
+            old.cancel()
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:

@@ -41,6 +41,9 @@ _LOG = structlog.get_logger("rigs")
 _RIGS_IN_MEMORY = 64
 _FILES_IN_MEMORY = 16
 _TEXTURED_IN_MEMORY = 4
+_WAITING_BAKES = 8
+"""People whose maps may wait to be baked, about ten seconds each; who is left out is baked when
+somebody asks for the maps again."""
 _PASSING_SECONDS = 60.0
 _UNIT_FIELDS = {"muscles", "jaw", "title", "region"}
 _CHANGES = ("recipe", "tissue", "muscles", "action_units", "emotions", "name")
@@ -98,7 +101,7 @@ class Rigs:
         self._rigs: Shelf[Rig] = Shelf(_RIGS_IN_MEMORY, self._pool)
         self._files: Shelf[bytes] = Shelf(_FILES_IN_MEMORY, self._files_pool)
         # A pool of its own: a bake takes seconds, and files must not wait behind it.
-        self._bakery = LatestFirst("textures")
+        self._bakery = LatestFirst("textures", most=_WAITING_BAKES)
         self._closing = threading.Event()
         self._textures: Shelf[Mapping[str, bytes]] = Shelf(_TEXTURED_IN_MEMORY, self._bakery)
         self._names: dict[str, str] = {}
@@ -218,7 +221,11 @@ class Rigs:
         return f"{rig.id}-{file}"
 
     async def textures(self, rig: Rig) -> Mapping[str, bytes]:
-        """Return a rig's textures by file name, baked in the background when nobody has."""
+        """Return a rig's textures by file name, baked in the background when nobody has.
+
+        Raises:
+            Busy: If so many others were asked for since that this one was not baked.
+        """
         if not texture_names(rig):
             return {}
         return await self._textures.get(_person_key(rig), lambda: self._baked(rig))

@@ -8,7 +8,11 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import Generic, TypeVar
 
+from .errors import Busy
+
 Value = TypeVar("Value")
+_RETRY_SECONDS = 10
+"""After which somebody whose value was not made may ask again: about as long as a bake takes."""
 
 
 class Shelf(Generic[Value]):
@@ -18,11 +22,6 @@ class Shelf(Generic[Value]):
         self._size = size
         self._pool = pool
         self._tasks: OrderedDict[str, asyncio.Future[Value]] = OrderedDict()
-
-    def peek(self, key: str) -> Value | None:
-        """Return the value if it is there already."""
-        task = self._tasks.get(key)
-        return task.result() if task and task.done() and not task.exception() else None
 
     def put(self, key: str, value: Value) -> None:
         """Keep a value that was made elsewhere."""
@@ -34,9 +33,19 @@ class Shelf(Generic[Value]):
         """Return the value of `key`; `make` it in the pool when nobody has.
 
         A failure is handed to everybody who waits, and not kept.
+
+        Raises:
+            Busy: If the pool had too much to do to make it.
         """
-        # Shielded: one asker who leaves must not cancel it for the others.
-        return await asyncio.shield(self.begin(key, make))
+        task = self.begin(key, make)
+        try:
+            # Shielded: one asker who leaves must not cancel it for the others.
+            return await asyncio.shield(task)
+        except asyncio.CancelledError:
+            if not task.cancelled():
+                raise
+            message = "too many others asked for what takes long; ask for it again"
+            raise Busy("too_much_to_make", message, retry_after=_RETRY_SECONDS) from None
 
     def begin(self, key: str, make: Callable[[], Value]) -> asyncio.Future[Value]:
         """Have the value of `key` made in the pool, if nobody has; return its future."""

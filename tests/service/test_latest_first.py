@@ -11,7 +11,7 @@ from service.latest_first import LatestFirst
 
 
 def test_what_was_asked_last_is_done_first() -> None:
-    pool, go, done = LatestFirst("test"), threading.Event(), []
+    pool, go, done = LatestFirst("test", most=3), threading.Event(), []
     started = threading.Event()
     pool.submit(lambda: (started.set(), go.wait()))
     assert started.wait(5)
@@ -24,7 +24,7 @@ def test_what_was_asked_last_is_done_first() -> None:
 
 
 def test_a_failure_is_handed_on_and_the_thread_lives() -> None:
-    pool = LatestFirst("test")
+    pool = LatestFirst("test", most=3)
     with pytest.raises(ZeroDivisionError):
         pool.submit(lambda: 1 // 0).result(5)
     assert pool.submit(lambda: 2).result(5) == 2
@@ -32,7 +32,7 @@ def test_a_failure_is_handed_on_and_the_thread_lives() -> None:
 
 
 def test_closing_ends_what_runs_and_cancels_what_waits() -> None:
-    pool, go, started = LatestFirst("test"), threading.Event(), threading.Event()
+    pool, go, started = LatestFirst("test", most=3), threading.Event(), threading.Event()
     running = pool.submit(lambda: (started.set(), go.wait(5)))
     assert started.wait(5)
     waiting = pool.submit(lambda: 1)
@@ -45,5 +45,17 @@ def test_closing_ends_what_runs_and_cancels_what_waits() -> None:
         pool.submit(lambda: 1)
 
 
+def test_what_waits_longest_makes_room_for_the_newest() -> None:
+    pool, go, done = LatestFirst("test", most=2), threading.Event(), []
+    started = threading.Event()
+    pool.submit(lambda: (started.set(), go.wait()))
+    assert started.wait(5)
+    waiting = [pool.submit(done.append, number) for number in range(5)]
+    assert [future.cancelled() for future in waiting] == [True, True, True, False, False]
+    go.set()
+    pool.shutdown()
+    assert done == [4, 3]
+
+
 def test_closing_one_that_never_worked_does_nothing() -> None:
-    LatestFirst("test").shutdown()
+    LatestFirst("test", most=3).shutdown()

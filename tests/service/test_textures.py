@@ -114,6 +114,23 @@ def test_faces_move_while_one_is_baked(fresh: TestClient, bakery: Bakery) -> Non
     assert not bakery.go.is_set()
 
 
+def test_strangers_in_a_loop_fill_no_queue(
+    fresh: TestClient, bakery: Bakery, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    until(lambda: bakery.asked == ["standard"])
+    rigs = []
+    for skin in range(service.rigs._WAITING_BAKES + 4):
+        body = {"recipe": {"skin": skin / 20}, "name": f"stranger {skin}"}
+        rigs.append(fresh.post("/api/rigs", json=body).json()["id"])
+        session = fresh.post("/api/sessions", json={"rig": rigs[-1]}).json()["id"]
+        fresh.delete(f"/api/sessions/{session}")
+    bakery.go.set()
+    until(lambda: len(bakery.asked) == 1 + service.rigs._WAITING_BAKES)
+    assert "stranger 0" not in bakery.asked
+    assert fresh.get(f"/api/rigs/{rigs[0]}/textures/albedo.jpg").status_code == 200
+    assert bakery.asked[-1] == "stranger 0"
+
+
 def test_a_service_that_stops_ends_the_bake(tmp_path: Path, bakery: Bakery) -> None:
     with TestClient(create_app(settings_in(tmp_path)), base_url=LOCAL):
         until(lambda: bakery.asked == ["standard"], seconds=120)
