@@ -22,17 +22,20 @@ from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .head.textures import head_textures
 from .jaw import JawHinge
+from .kept import keep, read_kept
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import measure_units
 from .mixing import hold_units, unit_key
 from .quality import judge
 from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig, rig_from_recipe
 from .simulator import FaceState, Simulator
+from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
 from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
 
 __all__ = [
     "BUILTIN_RIGS",
+    "ENGINE_HASH",
     "LANDMARKS_68",
     "LAYERS",
     "LETTERS",
@@ -71,10 +74,12 @@ __all__ = [
     "head_textures",
     "hold_units",
     "judge",
+    "keep",
     "landmarks_68",
     "measure_units",
     "parse_facs",
     "people",
+    "read_kept",
     "recipe_attributes",
     "record",
     "rig_from_recipe",

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 import zipfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import numpy.typing as npt
+
+from .kept import keep, read_kept
 
 MOST_BYTES = 1_000_000_000
 """Size that the folder's arrays may reach: some hundred people, at all levels."""
@@ -66,32 +68,16 @@ def cached_arrays(kind: str, key: str, build: Callable[[], Arrays]) -> Arrays:
 
 def _read(path: Path) -> Arrays | None:
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-            stored = {name: arrays[name] for name in arrays.files}
-        with suppress(OSError):
-            os.utime(path)  # What is asked for stays; see `_forget_oldest`.
-        return stored
+        return read_kept(path, _arrays_in)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile, KeyError):
         return None
 
 
+def _arrays_in(file: IO[bytes]) -> Arrays:
+    with np.load(file, allow_pickle=False) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
 def _write(path: Path, arrays: Arrays) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        # Written aside and renamed: a reader never sees half a file.
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
-            np.savez(file, allow_pickle=False, **arrays)
-        os.replace(file.name, path)
-        _forget_oldest(path.parent)
-    except OSError:
-        return
-
-
-def _forget_oldest(folder: Path) -> None:
-    """Remove the arrays that were asked for longest ago, beyond `MOST_BYTES`."""
-    files = [(file.stat(), file) for file in folder.glob("*.npz")]
-    size = 0
-    for stat, file in sorted(files, key=lambda entry: entry[0].st_mtime, reverse=True):
-        size += stat.st_size
-        if size > MOST_BYTES:
-            file.unlink(missing_ok=True)
+    with suppress(OSError):
+        keep(path, lambda file: np.savez(file, allow_pickle=False, **arrays), MOST_BYTES)

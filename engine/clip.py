@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
-from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +13,7 @@ from .errors import Cancelled, Diverged, InvalidValue
 from .frame import Frame, Pose
 from .rig import Model, Rig
 from .simulator import Simulator
+from .sources import ENGINE_HASH
 from .timeline import TICKS_PER_SECOND, Keyframe, Timeline, ticks
 
 Progress = Callable[[float], None]
@@ -165,7 +164,7 @@ def settled_units(rig: Rig, *, progress: Progress | None = None) -> list[Frame]:
     Kept on disk under the rig's id, for it takes seconds and many ask for it.
     """
     keyframes = [Keyframe(action_units={name: 1.0}, fade=UNIT_FADE) for name in rig.action_units]
-    key = content_key(rig.id, keyframes, _engine_stamp())
+    key = content_key(rig.id, keyframes, ENGINE_HASH)
 
     def build() -> Arrays:
         return _to_arrays(settled(rig, keyframes, progress=progress))
@@ -204,10 +203,3 @@ def _pose(numbers: list[float]) -> Pose:
     pitch, yaw, thrust, *gaze, turn, nod, tilt = numbers
     left, right = (gaze[0], gaze[1]), (gaze[2], gaze[3])
     return Pose(pitch, yaw, thrust, left, right, (turn, nod, tilt))
-
-
-@lru_cache(maxsize=1)
-def _engine_stamp() -> str:
-    """Return a hash of the engine's source: what it simulates changes when it does."""
-    sources = sorted(Path(__file__).parent.rglob("*.py"))
-    return content_key(*(source.read_bytes() for source in sources))

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.util
-import os
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +15,16 @@ import structlog
 
 from engine import (
     BUILTIN_RIGS,
+    ENGINE_HASH,
     LEVELS,
     Cancelled,
     EngineError,
     Rig,
     UnknownName,
     builtin_rig,
+    keep,
     people,
+    read_kept,
     rig_to_glb,
     surface_to_glb,
     texture_names,
@@ -274,7 +273,7 @@ class Rigs:
         return rig
 
     async def _file(self, key: str, make: Callable[[], bytes]) -> bytes:
-        path = self._cache_dir / f"{key}-{_engine_stamp()}.glb"
+        path = self._cache_dir / f"{key}-{ENGINE_HASH[:12]}.glb"
         try:
             return await self._files.get(key, lambda: _stored(path, make, self._cache_bytes))
         except EngineError as error:
@@ -334,43 +333,13 @@ def _key(base: str, changes: Mapping[str, Any]) -> str:
     return f"{base}+{hashlib.sha256(repr(sorted(changes.items())).encode()).hexdigest()}"
 
 
-@lru_cache(maxsize=1)
-def _engine_stamp() -> str:
-    """Return a hash of the engine's source: another engine writes other files of the same rig."""
-    spec = importlib.util.find_spec("engine")
-    folders = [Path(folder) for folder in (spec and spec.submodule_search_locations) or ()]
-    digest = hashlib.sha256()
-    for source in sorted(path for folder in folders for path in folder.rglob("*.py")):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:12]
-
-
 def _stored(path: Path, make: Callable[[], bytes], most_bytes: int) -> bytes:
     """Return the file at `path`, or make and keep it; an unwritable folder costs only time."""
+    with suppress(OSError):
+        return read_kept(path, lambda file: file.read())
+    data = make()
     try:
-        data = path.read_bytes()
-    except OSError:
-        data = make()
-    else:
-        with suppress(OSError):
-            os.utime(path)  # What is asked for stays; see `_forget_oldest`.
-        return data
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
-            file.write(data)
-        os.replace(file.name, path)
-        _forget_oldest(path.parent, most_bytes)
+        keep(path, lambda file: file.write(data), most_bytes)
     except OSError:
         _LOG.warning("the cache folder cannot be written", path=str(path.parent))
     return data
-
-
-def _forget_oldest(folder: Path, most_bytes: int) -> None:
-    """Remove the files of `folder` that were asked for longest ago, beyond `most_bytes`."""
-    files = [(file.stat(), file) for file in folder.glob("*.glb")]
-    size = 0
-    for stat, file in sorted(files, key=lambda entry: entry[0].st_mtime, reverse=True):
-        size += stat.st_size
-        if size > most_bytes:
-            file.unlink(missing_ok=True)

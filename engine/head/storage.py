@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from importlib import resources
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
 from ..cache import content_key
+from ..sources import HEAD_HASH
 from .head import DrawnSurface, Eye, Head, LidContact, Part
 
 Arrays = dict[str, npt.NDArray[np.generic]]
@@ -26,23 +26,7 @@ PART_ARRAYS = ("vertices", "normals", "triangles", "colors", "roots", "hair", "u
 
 def source_key(*parts: object) -> str:
     """Return a hash of `parts`, of the authored data and of all code that makes heads from it."""
-    return content_key(*parts, _SOURCES)
-
-
-def _source_files(folder: resources.abc.Traversable) -> list[tuple[str, bytes]]:
-    found: list[tuple[str, bytes]] = []
-    for entry in folder.iterdir():
-        if entry.is_dir() and entry.name != "__pycache__":
-            found += _source_files(entry)
-        elif entry.name.endswith((".py", ".json")):
-            found.append((entry.name, entry.read_bytes()))
-    return found
-
-
-# Read with the code itself: what a running process makes is not what a later source would make.
-_SOURCES = content_key(
-    *(content for _, content in sorted(_source_files(resources.files(__package__))))
-)
+    return content_key(*parts, HEAD_HASH)
 
 
 def head_to_arrays(head: Head) -> Arrays:

@@ -10,6 +10,7 @@ import pytest
 
 from engine import cache
 from engine.cache import cached_arrays
+from engine.kept import keep
 
 
 def test_what_is_read_has_the_layout_of_what_was_built(tmp_path, monkeypatch: pytest.MonkeyPatch):
@@ -38,3 +39,12 @@ def test_what_was_asked_for_longest_ago_makes_room(
     os.utime(tmp_path / "grid-old.npz", (1, 1))
     cached_arrays("grid", "newest", lambda: {"values": np.zeros(1000)})
     assert {file.stem for file in tmp_path.iterdir()} == {"grid-new", "grid-middle", "grid-newest"}
+
+
+def test_a_file_that_cannot_be_written_in_full_leaves_nothing(tmp_path: Path) -> None:
+    def fail(_file: object) -> None:
+        raise RuntimeError("half way")
+
+    with pytest.raises(RuntimeError):
+        keep(tmp_path / "face.glb", fail, 1000)
+    assert list(tmp_path.iterdir()) == []
