@@ -125,8 +125,7 @@ class Rig:
         jaw: Its hinge.
         model: The forms of the physics it runs unless a session says otherwise.
         recipe: What the person looks like; None for the paper's mask and heads from files.
-        content_id: Its id where another rig of the same content gave it: the level of detail of
-            what is drawn changes no id.
+        level: Detail of its drawn skin, where it has a recipe.
     """
 
     name: str
@@ -138,14 +137,14 @@ class Rig:
     jaw: JawHinge = field(default_factory=JawHinge)
     model: Model = field(default_factory=Model)
     recipe: Recipe | None = None
-    content_id: str | None = None
+    level: str = "high"
 
     @cached_property
     def id(self) -> str:
-        """Hash of the rig's content: the same face has the same id everywhere."""
-        if self.content_id is not None:
-            return self.content_id
+        """Hash of the rig's content: the same face has the same id everywhere, at every level."""
         head = self.head
+        # A recipe says what is drawn, at whatever level; the tissue is the same at all of them.
+        drawn = (head.drawn.vertices, head.drawn.colors) if self.recipe is None else ()
         return content_key(
             source_key(),
             head.points,
@@ -153,8 +152,7 @@ class Rig:
             head.depth,
             head.anchor_weight,
             head.jaw_weight,
-            head.drawn.vertices,
-            head.drawn.colors,
+            *drawn,
             self.parameters,
             self.muscles,
             sorted(self.action_units.items()),
@@ -267,9 +265,9 @@ class Rig:
         """
         if level not in LEVELS:
             raise UnknownName("level of detail", level, LEVELS)
-        if self.recipe is None:
+        if self.recipe is None or level == self.level:
             return self
-        return replace(self, head=person_head(self.recipe, level), content_id=self.id)
+        return replace(self, head=person_head(self.recipe, level), level=level)
 
     def derive(
         self,
@@ -281,7 +279,7 @@ class Rig:
         emotions: Mapping[str, object] | None = None,
         name: str | None = None,
     ) -> Rig:
-        """Return this rig with edits; the same edits give the same id.
+        """Return this rig with edits, at its level; the same edits give the same id at each.
 
         Args:
             recipe: What changes of the person, by attribute; earlier edits stay.
@@ -317,7 +315,6 @@ class Rig:
             parameters=self.parameters.edited(tissue or {}),
             muscles=edited,
             action_units=units,
-            content_id=None,
         )
         labels = dict(self.emotions)
         for label, emotion_spec in (emotions or {}).items():
@@ -359,8 +356,8 @@ class Rig:
                 "Derive from 'standard' or from a person"
             )
         recipe = Recipe.of(changes, self.recipe)
-        before = rig_from_recipe(self.recipe)
-        after = rig_from_recipe(recipe, name=self.name)
+        before = rig_from_recipe(self.recipe, level=self.level)
+        after = rig_from_recipe(recipe, name=self.name, level=self.level)
         muscles = tuple(
             replace(new, **_differences(now, old))
             for now, old, new in zip(self.muscles, before.muscles, after.muscles, strict=True)
@@ -467,14 +464,13 @@ def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high"
         UnknownName: There is no such level.
     """
     rig = rig_from_head(
-        person_head(recipe),
+        person_head(recipe, level),
         parameters=TissueParameters().edited(tissue_of_life(recipe)),
-        fitted_on=person_head(STANDARD),
+        fitted_on=person_head(STANDARD, level),
     )
     strength = muscle_strength(recipe) / muscle_strength(STANDARD)
     muscles = tuple(_as_strong(muscle, strength) for muscle in rig.muscles)
-    rig = replace(rig, name=name, recipe=recipe, muscles=muscles)
-    return rig if level == "high" else rig.at_level(level)
+    return replace(rig, name=name, recipe=recipe, muscles=muscles, level=level)
 
 
 def rig_from_head(

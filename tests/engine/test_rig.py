@@ -50,6 +50,23 @@ def test_the_same_edits_give_the_same_id(standard_rig):
     assert standard_rig.derive().id == standard_rig.id
 
 
+@pytest.mark.parametrize("edit", [{}, {"tissue": {"damping": 50.0}}, {"recipe": {"age": 60.0}}])
+def test_a_level_changes_no_id_whatever_is_edited(standard_rig, edit):
+    low = standard_rig.at_level("low")
+    assert low.id == standard_rig.id
+    edited = low.derive(**edit)
+    assert edited.id == standard_rig.derive(**edit).id
+    assert len(edited.head.drawn.vertices) == len(low.head.drawn.vertices)
+    back = edited.at_level("high")
+    assert back.id == edited.id
+    assert len(back.head.drawn.vertices) == len(standard_rig.head.drawn.vertices)
+
+
+def test_who_looks_otherwise_has_another_id(standard_rig):
+    # Freckles change neither tissue nor muscles.
+    assert standard_rig.derive(recipe={"freckles": 1.0}).id != standard_rig.id
+
+
 def test_custom_units_and_emotions_are_kept(standard_rig):
     rig = standard_rig.derive(
         action_units={"SNEER": {"muscles": {"levator_labii_alaeque_nasi.L": 1.0}, "jaw": 2.0}},
