@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import json
+import re
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +22,7 @@ from engine import (
     LEVELS,
     Cancelled,
     EngineError,
+    Recipe,
     Rig,
     UnknownName,
     builtin_rig,
@@ -43,7 +47,10 @@ _TEXTURED_IN_MEMORY = 4
 _WAITING_BAKES = 8
 """People whose maps may wait to be baked, about ten seconds each; who is left out is baked when
 somebody asks for the maps again."""
+_DERIVED_AT_ONCE = 16
+"""Rigs that may be derived or wait for it: a new person takes a second or two."""
 _PASSING_SECONDS = 60.0
+_ID = re.compile("[0-9a-f]{16}")
 _UNIT_FIELDS = {"muscles", "jaw", "title", "region"}
 _CHANGES = ("recipe", "tissue", "muscles", "action_units", "emotions", "name")
 
@@ -104,6 +111,7 @@ class Rigs:
         self._closing = threading.Event()
         self._textures: Shelf[Mapping[str, bytes]] = Shelf(_TEXTURED_IN_MEMORY, self._bakery)
         self._names: dict[str, str] = {}
+        self._deriving = 0
 
     def close(self) -> None:
         """Stop the pools; a bake ends with the map that it is at."""
@@ -118,24 +126,17 @@ class Rigs:
         Raises:
             NotFound: If there is none.
         """
-        name = self._names.get(name, name)
-        if name in _named():
-            return await self._built_in(name)
-        row = self._store.rig(name)
-        if row is None:
-            before = self._store.name_of_rig(name)
-            if before is not None and before != name:
-                return await self.get(before)
-            for built_in in BUILTIN_RIGS:  # An id may be that of a rig not built so far.
-                rig = await self._built_in(built_in)
-                if rig.id == name:
-                    return rig
+        known = self._known(name) or await self._known_when_built(name)
+        if known is None:
             raise self._unknown(name)
-        base = await self.get(row.base)
-        rig = await self._rigs.get(name, lambda: _derive(base, row.changes))
-        if rig.id not in self._names and rig.id != name:  # It was derived by another engine.
-            self._store.name_rig(rig.id, name)
-            self._names[rig.id] = name
+        if known in _named():
+            return await self._built_in(known)
+        root, steps = await self._made_from(known)
+        base = await self._built_in(root)
+        rig = await self._rigs.get(known, lambda: reduce(_derive, steps, base))
+        if rig.id not in self._names and rig.id != known:  # It was derived by another engine.
+            self._store.name_rig(rig.id, known)
+            self._names[rig.id] = known
         return rig
 
     async def derive(
@@ -151,27 +152,32 @@ class Rigs:
 
         Raises:
             Unprocessable: If a name is unknown or a value cannot be used.
-            Busy: If no more rigs can be kept.
+            Busy: If no more rigs can be kept, or too many are being derived.
         """
         changes = {key: value for key, value in changes.items() if value is not None}
-        rig = await self._rigs.get(_key(base.id, changes), lambda: _derive(base, changes))
-        if self._names.get(rig.id, rig.id) in _named():
-            return rig, False
-        if self._store.rig(rig.id):
-            if not passing:
-                self._store.keep_rig(rig.id)
-            return rig, False
-        self._make_room()
         # A row says how its rig comes from one that has a name, so that none depends on another
         # row, nor on the ids that this engine gives.
-        known = self._names.get(base.id, base.id)
-        before = self._store.rig(known)
-        root, all_changes = known, changes
+        root = self._known(base.id) or base.id
+        all_changes: Mapping[str, Any] = changes
+        before = self._store.rig(root)
         if before is not None:
             root, all_changes = before.base, merged_changes(before.changes, changes)
-        if rig.recipe is not None and "recipe" in all_changes:
-            # In full: what is left out may change with the engine, a person may not.
-            all_changes = {**all_changes, "recipe": rig.recipe.to_json()}
+        key = _key(base.id, changes)
+        kept = None
+        if key not in self._rigs and self._is_full():
+            kept = self._kept(root, _in_full(all_changes, _recipe_of(base, changes)))
+        if kept is not None:
+            rig = await self.get(kept)
+        else:
+            with self._admitted(key):
+                rig = await self._rigs.get(key, lambda: _derive(base, changes))
+        known = self._known(rig.id)
+        if known is not None:
+            if not passing:
+                self._store.keep_rig(known)
+            return rig, False
+        self._make_room()
+        all_changes = _in_full(all_changes, rig.recipe)
         self._store.add_rig(rig.id, base=root, changes=all_changes, passing=passing)
         self._rigs.put(rig.id, rig)
         return rig, True
@@ -258,10 +264,79 @@ class Rigs:
         name = hashlib.sha256(key.encode()).hexdigest()[:32]
         return await self._file(name, lambda: make(maps))
 
+    def _known(self, name: str) -> str | None:
+        """Return the name or the row's id that a name or any id of a rig stands for.
+
+        Ids are named by what has no other name, so that one step leads there.
+        """
+        if name in _named() or self._store.rig(name):
+            return name
+        known = self._names.get(name) or self._store.name_of_rig(name)
+        return known if known in _named() or (known and self._store.rig(known)) else None
+
+    async def _known_when_built(self, rig_id: str) -> str | None:
+        """Return the name of the rig with an id that no one has asked this store for by name."""
+        if not _ID.fullmatch(rig_id):
+            return None
+        for name in _named():  # Once for each name: an id that is not built is not known.
+            if name not in self._names.values():
+                await self._built_in(name)
+            if rig_id in self._names:
+                return self._names[rig_id]
+        return None
+
+    async def _made_from(self, row_id: str) -> tuple[str, list[Mapping[str, Any]]]:
+        """Return the named rig that a row's comes from, and what was changed, step by step.
+
+        Raises:
+            NotFound: If a rig between is not there any more.
+        """
+        steps: dict[str, Mapping[str, Any]] = {}
+        known: str | None = row_id
+        while known is not None and known not in _named():
+            row = self._store.rig(known)
+            if row is None or row.id in steps:
+                raise self._unknown(row_id)
+            steps[row.id] = row.changes
+            known = self._known(row.base) or await self._known_when_built(row.base)
+        if known is None:
+            raise self._unknown(row_id)
+        return known, list(reversed(steps.values()))
+
+    def _kept(self, root: str, changes: Mapping[str, Any]) -> str | None:
+        """Return the row of the rig that `changes` make of `root`, if there is one."""
+        wanted = _content(changes)
+        rows = (row for row in self._store.rigs() if row.base == root)
+        return next((row.id for row in rows if _content(row.changes) == wanted), None)
+
+    @contextmanager
+    def _admitted(self, key: str) -> Iterator[None]:
+        """Let somebody derive a rig, if there is room for it; what is made already costs nothing.
+
+        Raises:
+            Busy: If there is none, or too many are being derived.
+        """
+        if key in self._rigs:
+            yield
+            return
+        if self._deriving >= _DERIVED_AT_ONCE:
+            message = f"{self._deriving} rigs are being derived; ask for this one again"
+            raise Busy("too_many_derivations", message, retry_after=2)
+        self._make_room()
+        self._deriving += 1
+        try:
+            yield
+        finally:
+            self._deriving -= 1
+
+    def _is_full(self) -> bool:
+        # Those that are being derived are counted: each has been promised its place.
+        return self._store.rig_count() + self._deriving >= self._limit
+
     def _make_room(self) -> None:
         # A session's row is saved a second after it moved: what is younger may be in use.
         ago = time.time() - _PASSING_SECONDS
-        if self._store.rig_count() >= self._limit and not self._store.remove_passing_rigs(ago):
+        if self._is_full() and not self._store.remove_passing_rigs(ago):
             message = f"at most {self._limit} rigs are kept; RISORIUS_MAX_RIGS allows more"
             raise Busy("too_many_rigs", message, retry_after=60)
 
@@ -327,6 +402,30 @@ def _merged_fields(earlier: Mapping[str, Any], later: Mapping[str, Any]) -> dict
         both = isinstance(merged.get(name), Mapping) and isinstance(value, Mapping)
         merged[name] = _merged_fields(merged[name], value) if both else value
     return merged
+
+
+def _recipe_of(base: Rig, changes: Mapping[str, Any]) -> Recipe | None:
+    """Return the person that `changes` make of `base`, if it is one and they can be read."""
+    if base.recipe is None:
+        return None
+    with suppress(EngineError, TypeError, ValueError, AttributeError):
+        return Recipe.of(changes.get("recipe") or {}, base.recipe)
+    return None
+
+
+def _in_full(changes: Mapping[str, Any], recipe: Recipe | None) -> Mapping[str, Any]:
+    """Return changes with the whole of a recipe that they change.
+
+    What is left out of it may change with the engine, a person may not.
+    """
+    if recipe is None or "recipe" not in changes:
+        return changes
+    return {**changes, "recipe": recipe.to_json()}
+
+
+def _content(changes: Mapping[str, Any]) -> str:
+    """Return changes in one form, but for the name, which changes no face."""
+    return json.dumps({**changes, "name": None}, sort_keys=True)
 
 
 def _key(base: str, changes: Mapping[str, Any]) -> str:

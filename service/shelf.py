@@ -23,6 +23,10 @@ class Shelf(Generic[Value]):
         self._pool = pool
         self._tasks: OrderedDict[str, asyncio.Future[Value]] = OrderedDict()
 
+    def __contains__(self, key: str) -> bool:
+        """Whether the value of `key` is there, or being made."""
+        return key in self._tasks
+
     def put(self, key: str, value: Value) -> None:
         """Keep a value that was made elsewhere."""
         done: asyncio.Future[Value] = asyncio.get_running_loop().create_future()
