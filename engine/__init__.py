@@ -5,6 +5,7 @@ Eurographics 2001). A face is a rig; commands are keyframes; a simulator plays t
 """
 
 from .clip import Clip, clip_of, record, settled, settled_units
+from .conditions import TISSUE_AGES, plain_changes
 from .emotion import Emotion, blend
 from .errors import (
     Cancelled,
@@ -42,6 +43,7 @@ __all__ = [
     "LEVELS",
     "MODEL_CHOICES",
     "TICKS_PER_SECOND",
+    "TISSUE_AGES",
     "ActionUnit",
     "Cancelled",
     "Clip",
@@ -79,6 +81,7 @@ __all__ = [
     "measure_units",
     "parse_facs",
     "people",
+    "plain_changes",
     "read_kept",
     "recipe_attributes",
     "record",

@@ -99,7 +99,8 @@ def _lid_angles(rig: Rig) -> FloatArray:
     for index, muscle in enumerate(rig.muscles):
         if isinstance(muscle, LidMuscle):
             side = 1 if muscle.name.endswith(".R") else 0
-            angles[index, side] = muscle.upper, muscle.lower
+            gain = muscle.gain[side]
+            angles[index, side] = muscle.upper * gain, muscle.lower * gain
     return angles
 
 

@@ -29,6 +29,7 @@ from .muscle import (
     Muscle,
     SheetMuscle,
     SphincterMuscle,
+    gain_at,
     mirrored,
 )
 from .tissue import TissueModel
@@ -82,7 +83,8 @@ def rest_basis(
             force = force_density(muscle, nodes, ring=ring) * tissue.scale[:, None]
         force = _smooth(tissue, force, tissue.parameters.force_smoothing)
         force[tissue.held] = 0.0
-        basis[row] = muscle.force_scale * force.T
+        gain = tissue.parameters.muscle_strength * gain_at(muscle, nodes.points[:, 0])
+        basis[row] = gain * (muscle.force_scale * force.T)
     return basis
 
 
@@ -168,6 +170,7 @@ def moving_pull(head: Head, tissue: TissueModel, muscles: Sequence[Muscle], *, r
         right = muscle.name.endswith(".R")
         here = points * np.array([-1.0, 1.0, 1.0]) if right else points
         share = share_of(mirrored(muscle) if right else muscle, here, jaw) * tissue.scale
+        share *= tissue.parameters.muscle_strength * gain_at(muscle, points[:, 0])
         share[tissue.held] = 0.0
         kinds.append({"linear": 0, "sphincter": 1, "sheet": 2}[muscle.kind])
         shapes.append(packed_shape(muscle, ring=ring))

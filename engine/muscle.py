@@ -23,6 +23,8 @@ SHEET_TAPER = 0.35
 """Outer share of a sheet's half width over which its force fades; the paper has a hard edge."""
 RING_PEAK = 0.6
 """Radius, as a share of the ellipse, at which the ring profile of a sphincter is greatest."""
+MAX_GAIN = 2.0
+"""Greatest share of its own force that a muscle may have."""
 SPHINCTER_REACH_MM = 30.0
 """Greatest distance from a sphincter's plane at which it acts; spares the back of the head."""
 
@@ -41,6 +43,8 @@ class LinearMuscle:
         force_scale: α, the macro control, paper stiffness units times mm per reference area.
         acts_on: "skin", or one side of the lip slit: "upper_lip" or "lower_lip".
         extension: True for a muscle that the paper's 23 do not have.
+        gain: Share of the force that acts in the left and in the right half of the face, 0..2:
+            under 1 for a palsy or a relaxed muscle.
         source: Where geometry and values come from.
     """
 
@@ -53,11 +57,13 @@ class LinearMuscle:
     force_scale: float
     acts_on: str = "skin"
     extension: bool = False
+    gain: tuple[float, float] = (1.0, 1.0)
     source: str = ""
     kind: str = "linear"
 
     def __post_init__(self) -> None:
         _check_positive(self, "strength", "radius")
+        _check_gain(self)
         _check_range(self, "angle", 1.0, 89.0)
         length = math.dist(self.attachment, self.insertion)
         if self.radius <= length:
@@ -103,6 +109,8 @@ class SphincterMuscle:
         tangential: True where the ring lies on bone and can only slide the skin along it.
         force_scale: α.
         extension: True for a muscle that the paper's 23 do not have.
+        gain: Share of the force that acts in the left and in the right half of the face, 0..2:
+            under 1 for a palsy or a relaxed muscle.
         source: Where geometry and values come from.
     """
 
@@ -118,11 +126,13 @@ class SphincterMuscle:
     tangential: bool = False
     acts_on: str = "skin"
     extension: bool = False
+    gain: tuple[float, float] = (1.0, 1.0)
     source: str = ""
     kind: str = "sphincter"
 
     def __post_init__(self) -> None:
         _check_positive(self, "semi_major", "semi_minor")
+        _check_gain(self)
         _check_range(self, "hoop", 0.0, 1.0)
 
     def weights(self, points: FloatArray, *, profile: str = "ring") -> FloatArray:
@@ -179,6 +189,8 @@ class SheetMuscle:
         strength: η.
         force_scale: α.
         extension: True for a muscle that the paper's 23 do not have.
+        gain: Share of the force that acts in the left and in the right half of the face, 0..2:
+            under 1 for a palsy or a relaxed muscle.
         source: Where geometry and values come from.
     """
 
@@ -190,11 +202,13 @@ class SheetMuscle:
     force_scale: float
     acts_on: str = "skin"
     extension: bool = False
+    gain: tuple[float, float] = (1.0, 1.0)
     source: str = ""
     kind: str = "sheet"
 
     def __post_init__(self) -> None:
         _check_positive(self, "strength", "radius")
+        _check_gain(self)
 
     def weights(self, points: FloatArray) -> FloatArray:
         """Return Θ(λ), tapered to the sides, at skin `points`, shape (k, 3), mm → shape (k,)."""
@@ -255,6 +269,8 @@ class LidMuscle:
         name: "levator_palpebrae.L".
         upper: Turn of the upper lid at activation 1, degrees; positive closes.
         lower: Turn of the lower lid at activation 1, degrees; positive raises.
+        gain: Share of the turn that acts in the left and in the right half of the face, 0..2:
+            under 1 for a palsy or a relaxed muscle.
         source: Where the values come from.
     """
 
@@ -262,8 +278,12 @@ class LidMuscle:
     upper: float
     lower: float
     extension: bool = True
+    gain: tuple[float, float] = (1.0, 1.0)
     source: str = ""
     kind: str = "lid"
+
+    def __post_init__(self) -> None:
+        _check_gain(self)
 
 
 Muscle: TypeAlias = LinearMuscle | SphincterMuscle | SheetMuscle | LidMuscle
@@ -323,7 +343,20 @@ def mirrored(muscle: Muscle) -> Muscle:
         for field in fields(muscle)
         if field.name in points
     }
-    return replace(muscle, name=name, **changes)  # type: ignore[arg-type]
+    left, right = muscle.gain
+    return replace(muscle, name=name, gain=(right, left), **changes)  # type: ignore[arg-type]
+
+
+def gain_at(muscle: Muscle, x: FloatArray) -> FloatArray:
+    """Return the share of `muscle`'s force that acts at points of abscissa `x`, mm, same shape.
+
+    A paired muscle has the gain of its side; across the midline a single one blends its two.
+    """
+    left, right = muscle.gain
+    if muscle.name.endswith((".L", ".R")):
+        return np.full(np.shape(x), right if muscle.name.endswith(".R") else left)
+    share = np.clip(0.5 + 0.5 * x / MIDLINE_BLEND_MM, 0.0, 1.0)
+    return np.asarray(right + (left - right) * share)
 
 
 def _flip(value: object) -> object:
@@ -342,6 +375,14 @@ def _check_positive(muscle: Muscle, *names: str) -> None:
         value = getattr(muscle, name)
         if not (math.isfinite(value) and value > 0.0):
             raise InvalidValue(f"muscle {muscle.name}: {name} is {value!r}; it must be above 0")
+
+
+def _check_gain(muscle: Muscle) -> None:
+    for value in muscle.gain:
+        if not 0.0 <= value <= MAX_GAIN:
+            raise InvalidValue(
+                f"muscle {muscle.name}: gain is {value!r}; it must lie between 0 and {MAX_GAIN:g}"
+            )
 
 
 def _check_range(muscle: Muscle, name: str, low: float, high: float) -> None:

@@ -33,7 +33,7 @@ from .jaw import JawHinge
 from .muscle import LidMuscle, Muscle, SphincterMuscle, mirrored
 from .rig_data import load_action_units, load_emotions, load_muscles
 from .timeline import LAYERS, Keyframe
-from .tissue import PAPER_PARAMETERS, TissueParameters
+from .tissue import PAPER_PARAMETERS, TissueParameters, check_fields
 
 BUILTIN_RIGS = ("standard", "paper")
 MAX_ACTIVATION = 1.5
@@ -67,6 +67,7 @@ EDITABLE = (
     "hoop",
     "upper",
     "lower",
+    "gain",
 )
 
 
@@ -309,10 +310,12 @@ class Rig:
         units = dict(self.action_units)
         for unit_name, spec in (action_units or {}).items():
             units[unit_name] = self._custom_unit(unit_name, spec)
+        parameters = self.parameters.edited(tissue or {})
+        check_fields(self.head, parameters)
         rig = replace(
             self,
             name=name or self.name,
-            parameters=self.parameters.edited(tissue or {}),
+            parameters=parameters,
             muscles=edited,
             action_units=units,
         )
@@ -557,6 +560,8 @@ def _edited_muscle(muscle: Muscle, changes: Mapping[str, object]) -> Muscle:
 def _like(name: str, old: object, value: object) -> object:
     """Return `value` in the shape of `old`: a number, a point, or a pair of points."""
     if isinstance(old, tuple):
+        if name.endswith(".gain") and not isinstance(value, list | tuple):
+            value = [value, value]
         if not isinstance(value, list | tuple) or len(value) != len(old):
             raise InvalidValue(f"{name} is {value!r}; expected {len(old)} entries like {old!r}")
         return tuple(_like(name, o, v) for o, v in zip(old, value, strict=True))

@@ -147,6 +147,25 @@ class NewSession(Body):
     model: ModelChoice = ModelChoice()
 
 
+class Palsy(Body):
+    """A one-sided weakness of the facial nerve's muscles."""
+
+    side: Literal["left", "right", "both"]
+    grade: Literal["I", "II", "III", "IV", "V", "VI"] | None = Field(
+        default=None, description="House and Brackmann's: I is normal, VI total paralysis."
+    )
+    gain: Share | None = Field(
+        default=None, description="Share of the force that is left, in place of a grade."
+    )
+
+
+class Relaxed(Body):
+    """Share of its force that each half of a muscle has lost."""
+
+    left: Share = 0.0
+    right: Share = 0.0
+
+
 class NewRig(Body):
     """A rig to derive from another one."""
 
@@ -155,7 +174,21 @@ class NewRig(Body):
     recipe: Changes | None = Field(
         default=None, examples=[{"age": 60, "skin": "dark"}], description="What the person is like."
     )
-    tissue: Changes | None = None
+    tissue: Changes | None = Field(
+        default=None,
+        examples=[{"region_laxity": {"cheek": 0.5}, "tissue_depth": {"C5_2": 14.0}}],
+        description="Tissue constants, factors by region, and thickness maps by point or node.",
+    )
+    tissue_age: Literal["young", "middle", "old"] | Number | None = Field(
+        default=None, description="Age of skin and muscles alone: a preset, or years."
+    )
+    palsy: Palsy | None = None
+    relaxed: dict[Name, Share | Relaxed] | None = Field(
+        default=None,
+        max_length=256,
+        examples=[{"corrugator_supercilii": 0.8, "frontalis_medial.L": 1.0}],
+        description="Share of its force that each muscle has lost, as by botulinum toxin.",
+    )
     muscles: Changes | None = None
     action_units: Changes | None = None
     emotions: Changes | None = None

@@ -28,6 +28,7 @@ from engine import (
     builtin_rig,
     keep,
     people,
+    plain_changes,
     read_kept,
     rig_to_glb,
     surface_to_glb,
@@ -146,7 +147,8 @@ class Rigs:
 
         Args:
             base: What is changed.
-            changes: By `tissue`, `muscles`, `action_units`, `emotions` and `name`.
+            changes: By `tissue`, `muscles`, `action_units`, `emotions`, `name`, and conditions
+                (`tissue_age`, `palsy`, `relaxed`), which are kept as what they come to.
             passing: Whether it is one step of a live edit: it then makes room for others once no
                 session and no clip is on it.
 
@@ -155,6 +157,7 @@ class Rigs:
             Busy: If no more rigs can be kept, or too many are being derived.
         """
         changes = {key: value for key, value in changes.items() if value is not None}
+        changes = _plain(base, changes)
         # A row says how its rig comes from one that has a name, so that none depends on another
         # row, nor on the ids that this engine gives.
         root = self._known(base.id) or base.id
@@ -373,6 +376,13 @@ def _derive(base: Rig, changes: Mapping[str, Any]) -> Rig:
         raise Unprocessable(
             "invalid_value", f"these changes cannot be applied to rig {base.id}: {error}"
         ) from error
+
+
+def _plain(base: Rig, changes: Mapping[str, Any]) -> dict[str, Any]:
+    try:
+        return plain_changes(base, changes)
+    except EngineError as error:
+        raise refused_by_engine(error) from error
 
 
 def _unit(spec: Any) -> Any:

@@ -121,23 +121,29 @@ def sheet_of(head: Head) -> Sheet:
     )
 
 
-def stack_layers(head: Head, sheet: Sheet, parameters: TissueParameters) -> Layers:
+def stack_layers(
+    sheet: Sheet, parameters: TissueParameters, depth: FloatArray, dermis: FloatArray
+) -> Layers:
     """Trace the dermis and hypodermis nodes inwards from `sheet`.
+
+    Args:
+        sheet: The surface.
+        parameters: Constants of the tissue.
+        depth: Skin to bone, mm, shape (n,).
+        dermis: Epidermis to dermis, mm, shape (n,).
 
     Tracing plain normals turns elements inside out from 3 mm on at lips, lids and alae; so normals
     are smoothed, and depths shrunk where a triangle would lose too much of its area.
     """
     p = parameters
     if p.regional_depth:
-        depth = head.depth
         hypodermis = np.clip(p.hypodermis_share * depth, p.hypodermis_least, p.hypodermis_most)
     else:
-        depth = np.full(head.sheet_count, p.uniform_depth)
-        hypodermis = np.full(head.sheet_count, (p.uniform_depth - p.dermis_depth) / 2.0)
+        hypodermis = (depth - dermis) / 2.0
     normals = smooth_normals(sheet)
-    share = safe_share(sheet, normals, p.dermis_depth + hypodermis)
-    below = (share * p.dermis_depth)[:, None] * normals
-    deepest = (share * (p.dermis_depth + hypodermis))[:, None] * normals
+    share = safe_share(sheet, normals, dermis + hypodermis)
+    below = (share * dermis)[:, None] * normals
+    deepest = (share * (dermis + hypodermis))[:, None] * normals
     foot = np.minimum(depth, np.maximum(depth * share, LEAST_BONE_DEPTH_MM))
     points = sheet.points
     nodes = np.concatenate([points, points - below, points - deepest])

@@ -22,6 +22,7 @@ from ..dynamics import (
 from ..head import Head
 from ..head.anatomy import smoothstep
 from .contact import TARSAL_RINGS, Lids, contacts_of, lids_of, ring_and_spoke
+from .fields import fields_of
 from .layers import Layers, Sheet, sheet_of, stack_layers
 from .parameters import TissueParameters
 from .springs import build_springs, reference_area
@@ -87,10 +88,11 @@ def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool)
         literal_springs: Eq. 20 as printed.
     """
     sheet = sheet_of(head)
-    layers = stack_layers(head, sheet, parameters)
+    fields = fields_of(head, sheet, parameters)
+    layers = stack_layers(sheet, parameters, fields.depth, fields.dermis)
     scale = sheet.node_area / reference_area(sheet, parameters)
-    springs = build_springs(sheet, layers, parameters, literal=literal_springs)
-    anchors = _anchors(head, parameters, scale)
+    springs = build_springs(sheet, layers, fields, parameters, literal=literal_springs)
+    anchors = _anchors(head, parameters, scale * fields.ties)
     barrier = _barrier(layers, parameters, scale)
     plate = _plate(sheet, parameters, scale)
     pressure = _pressure(head, sheet, layers, parameters)

@@ -66,6 +66,17 @@ class TissueParameters:
         force_quadrature: Muscle weights integrated over each quad, not sampled at nodes.
         regional_depth: Skin depth by region; off: `uniform_depth` everywhere.
         uniform_depth: Depth to bone where it is not regional, mm (1.5 + 3 + 3).
+    What goes by region (a label of the head's polygons such as "cheek", a part of several such as
+    "lip", or "face"; "cheek.L" is one side) or by point, all empty on the built-in rigs:
+        region_stiffness, region_thickness, region_pretension: Factor on the springs along the
+            layers, on skin and depth to bone, and on the pre-tension.
+        region_laxity: 0, as it is, to 1, wholly lax: see `engine.tissue.fields`.
+        skin_thickness: Epidermis to dermis, mm, as ultrasound or MRI measures it.
+        tissue_depth: Skin to bone, mm, as CT or MRI measures it. Both maps are by cage point
+            ("M1_5.L"; "M1_5" is both sides), interpolated between them, or one value for each
+            tissue node of the sheet, in the order of the stream.
+    Muscles:
+        muscle_strength: Force of every muscle against what is stored for it.
     """
 
     stiffness_low: Layered = Layered(50.0, 20.0, 30.0)
@@ -100,6 +111,12 @@ class TissueParameters:
     regional_depth: bool = True
     uniform_depth: float = 7.5
     region_stiffness: Mapping[str, float] = field(default_factory=dict)
+    region_thickness: Mapping[str, float] = field(default_factory=dict)
+    region_laxity: Mapping[str, float] = field(default_factory=dict)
+    region_pretension: Mapping[str, float] = field(default_factory=dict)
+    skin_thickness: Mapping[str, float] | tuple[float, ...] = field(default_factory=dict)
+    tissue_depth: Mapping[str, float] | tuple[float, ...] = field(default_factory=dict)
+    muscle_strength: float = 1.0
 
     def __post_init__(self) -> None:
         for name, (low, high) in LIMITS.items():
@@ -113,8 +130,16 @@ class TissueParameters:
                     f"stiffness_high.{layer} is below stiffness_low.{layer}; "
                     "skin stiffens past the strain threshold"
                 )
-        for region, factor in self.region_stiffness.items():
-            _check(f"region_stiffness.{region}", factor, 0.1, 10.0)
+        for name, (low, high) in MAP_LIMITS.items():
+            values = getattr(self, name)
+            entries = values.items() if isinstance(values, Mapping) else enumerate(values)
+            for entry, value in entries:
+                _check(f"{name}.{entry}", value, low, high)
+        most = LIMITS["pretension"][1]
+        for region, factor in self.region_pretension.items():
+            _check(
+                f"pretension times region_pretension.{region}", self.pretension * factor, 0, most
+            )
 
     def edited(self, changes: Mapping[str, object]) -> TissueParameters:
         """Return these parameters with `changes`, by field name; layered fields take a mapping.
@@ -135,10 +160,8 @@ class TissueParameters:
         old = getattr(self, name)
         if isinstance(old, Layered):
             return _edited_layers(name, old, value)
-        if name == "region_stiffness":
-            if not isinstance(value, Mapping):
-                raise InvalidValue(f"{name} is {value!r}; expected a mapping of region to factor")
-            return {**old, **{str(k): _number(name, v) for k, v in value.items()}}
+        if name in MAP_LIMITS:
+            return _edited_map(name, old, value)
         if isinstance(old, bool):
             if not isinstance(value, bool):
                 raise InvalidValue(f"{name} is {value!r}; expected true or false")
@@ -192,8 +215,41 @@ LIMITS: Mapping[str, tuple[float, float]] = {
     "fat_pressure": (0.0, 600.0),
     "ligament": (0.0, 20.0),
     "uniform_depth": (2.0, 40.0),
+    "muscle_strength": (0.0, 2.0),
 }
 """Allowed range of each single number; beyond it a face is not stable or no longer a face."""
+
+MAP_LIMITS: Mapping[str, tuple[float, float]] = {
+    "region_stiffness": (0.25, 10.0),
+    "region_thickness": (0.4, 2.5),
+    "region_laxity": (0.0, 1.0),
+    "region_pretension": (0.0, 3.0),
+    "skin_thickness": (0.3, 5.0),
+    "tissue_depth": (3.0, 40.0),
+}
+"""Allowed range of each entry of what goes by region or by point."""
+POINT_MAPS = ("skin_thickness", "tissue_depth")
+"""Those that may be given by tissue node too."""
+
+
+def _edited_map(
+    name: str, old: Mapping[str, float] | tuple[float, ...], value: object
+) -> Mapping[str, float] | tuple[float, ...]:
+    """Return a map with `value` taken in: sorted, so that the same input has the same id.
+
+    None empties it; an array by node replaces it, and is replaced.
+    """
+    if value is None:
+        return {}
+    by_node = name in POINT_MAPS
+    if isinstance(value, list | tuple) and by_node:
+        return tuple(_number(f"{name}.{node}", v) for node, v in enumerate(value))
+    if not isinstance(value, Mapping):
+        what = "an object by cage point or an array by node, mm" if by_node else "one by region"
+        raise InvalidValue(f"{name} is {value!r}; expected {what}")
+    before = old if isinstance(old, Mapping) else {}
+    after = {str(k): _number(f"{name}.{k}", v) for k, v in value.items()}
+    return dict(sorted({**before, **after}.items()))
 
 
 def _edited_layers(name: str, old: Layered, value: object) -> Layered:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..dynamics import Springs
+from .fields import TissueFields
 from .layers import Layers, Sheet
 from .parameters import TissueParameters
 
@@ -24,7 +25,12 @@ def reference_area(sheet: Sheet, parameters: TissueParameters) -> float:
 
 
 def build_springs(
-    sheet: Sheet, layers: Layers, parameters: TissueParameters, *, literal: bool
+    sheet: Sheet,
+    layers: Layers,
+    fields: TissueFields,
+    parameters: TissueParameters,
+    *,
+    literal: bool,
 ) -> Springs:
     """Join the nodes: along the layers, straight down, and across.
 
@@ -35,33 +41,35 @@ def build_springs(
     Args:
         sheet: The surface.
         layers: Node positions.
+        fields: What goes by region or by point.
         parameters: Stiffnesses and switches.
         literal: Eq. 20 as printed in place of the continuous biphasic law.
     """
     p, n = parameters, len(sheet.points)
-    parts: list[tuple[IntArray, IntArray, FloatArray, FloatArray, float]] = []
+    parts: list[tuple[IntArray, IntArray, FloatArray, FloatArray, FloatArray]] = []
 
-    def add(first: IntArray, second: IntArray, layer: int, scale: FloatArray, short: float) -> None:
+    def add(first: IntArray, second: IntArray, layer: int, scale: FloatArray) -> None:
         low, high = p.stiffness_low[layer], p.stiffness_high[layer]
-        parts.append((first, second, low * scale, high * scale, short))
+        parts.append((first, second, low * scale, high * scale, np.zeros(len(first))))
 
-    edges, region = sheet.edges, _region_scale(sheet, p)
+    def add_along(pairs: IntArray, layer: int, scale: FloatArray) -> None:
+        if layer < 2:
+            scale = scale * fields.skin[pairs].mean(axis=1)
+        low = p.stiffness_low[layer] * fields.slack[pairs].mean(axis=1)
+        first, second = pairs[:, 0] + layer * n, pairs[:, 1] + layer * n
+        short = fields.pretension[pairs].mean(axis=1)
+        parts.append((first, second, low * scale, p.stiffness_high[layer] * scale, short))
+
+    edges, region = sheet.edges, fields.stiffness
     edge_scale = _edge_scale(sheet) * region[edges].mean(axis=1)
     diagonals, diagonal_scale = _diagonals(sheet)
     diagonal_scale = (
         diagonal_scale * region[diagonals].mean(axis=1) if len(diagonals) else diagonal_scale
     )
     for layer in range(3):
-        offset = layer * n
-        add(edges[:, 0] + offset, edges[:, 1] + offset, layer, edge_scale, p.pretension)
+        add_along(edges, layer, edge_scale)
         if p.cross_diagonals and len(diagonals):
-            add(
-                diagonals[:, 0] + offset,
-                diagonals[:, 1] + offset,
-                layer,
-                diagonal_scale,
-                p.pretension,
-            )
+            add_along(diagonals, layer, diagonal_scale)
     area0 = reference_area(sheet, p)
     down = sheet.node_area / area0
     # The two shear springs of an edge share its skin on a square lattice; on triangles each
@@ -70,13 +78,13 @@ def build_springs(
     node = np.arange(n)
     for layer in range(2):
         upper, lower = layer * n, (layer + 1) * n
-        add(node + upper, node + lower, layer + 1, down, 0.0)
-        add(edges[:, 0] + upper, edges[:, 1] + lower, layer + 1, shear, 0.0)
-        add(edges[:, 1] + upper, edges[:, 0] + lower, layer + 1, shear, 0.0)
+        add(node + upper, node + lower, layer + 1, down)
+        add(edges[:, 0] + upper, edges[:, 1] + lower, layer + 1, shear)
+        add(edges[:, 1] + upper, edges[:, 0] + lower, layer + 1, shear)
     first = np.concatenate([part[0] for part in parts])
     second = np.concatenate([part[1] for part in parts])
     length = np.linalg.norm(layers.nodes[first] - layers.nodes[second], axis=1)
-    short = np.concatenate([np.full(len(part[0]), part[4]) for part in parts])
+    short = np.concatenate([part[4] for part in parts])
     high = np.concatenate([part[3] for part in parts])
     return Springs(
         first=first.astype(np.int32),
@@ -110,23 +118,3 @@ def _diagonals(sheet: Sheet) -> tuple[IntArray, FloatArray]:
     squared = ((sheet.points[pairs[:, 0]] - sheet.points[pairs[:, 1]]) ** 2).sum(axis=1)
     # Area over squared diagonal is a half on squares: with it a square lattice is isotropic.
     return pairs, np.clip(np.repeat(area, 2) / squared, *DIAGONAL_SCALE_LIMITS)
-
-
-def _region_scale(sheet: Sheet, parameters: TissueParameters) -> FloatArray:
-    scale = np.ones(len(sheet.points))
-    for region, factor in parameters.region_stiffness.items():
-        share = sheet_region_share(sheet, region)
-        scale *= 1.0 + (factor - 1.0) * share
-    return scale
-
-
-def sheet_region_share(sheet: Sheet, region: str) -> FloatArray:
-    """Return each node's share of polygons whose label is or holds `region`, shape (n,)."""
-    inside = np.array([region == label or region in label for label in sheet.polygon_regions])
-    share, total = np.zeros(len(sheet.points)), np.zeros(len(sheet.points))
-    for k in range(4):
-        has = sheet.polygons[:, k] >= 0
-        corner = sheet.polygons[has, k]
-        np.add.at(share, corner, inside[has].astype(float))
-        np.add.at(total, corner, 1.0)
-    return np.asarray(share / np.maximum(total, 1.0))

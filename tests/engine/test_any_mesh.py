@@ -10,6 +10,7 @@ from engine import Keyframe, Simulator
 from engine.head import Head, head_from_mesh, read_head
 from engine.rig import rig_from_head
 from engine.tissue import PAPER_PARAMETERS, TissueParameters
+from engine.tissue.fields import fields_of
 from engine.tissue.layers import sheet_of, stack_layers, triangle_normals
 
 HALF_AXES = np.array([75.0, 110.0, 95.0])
@@ -44,7 +45,8 @@ def head(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 )
 def test_no_element_is_inside_out(head, parameters):
     sheet = sheet_of(head)
-    layers = stack_layers(head, sheet, parameters)
+    fields = fields_of(head, sheet, parameters)
+    layers = stack_layers(sheet, parameters, fields.depth, fields.dermis)
     n = head.sheet_count
     surface = triangle_normals(sheet.points, sheet.triangles)
     for layer in (1, 2):

@@ -164,6 +164,15 @@ def test_a_custom_unit_is_weighted_muscles(client: TestClient) -> None:
         {"action_units": {"AU12": {"muscles": {"zygomatic_major": None}}}},
         {"emotions": {"odd": {"recipe": "12C", "synonyms": 5}}},
         {"emotions": {"odd": 7}},
+        {"tissue": {"region_laxity": {"chek": 0.5}}},
+        {"tissue": {"tissue_depth": [9.0]}},
+        {"tissue": {"skin_thickness": {"M1_55": 2.0}}},
+        {"tissue_age": "ancient"},
+        {"base": "paper", "tissue_age": "old"},
+        {"palsy": {"side": "left"}},
+        {"palsy": {"side": "up", "grade": "II"}},
+        {"relaxed": {"biceps": 0.5}},
+        {"relaxed": {"procerus": 2.0}},
         {"base": "nobody"},
         {"name": ""},
     ],
@@ -320,3 +329,25 @@ def test_an_id_of_an_older_engine_is_found(tmp_path: Path) -> None:
         assert client.get("/api/rigs/0123456789abcdef").json() == standard
         derived = client.get("/api/rigs/fedcba9876543210").json()
         assert client.get(f"/api/rigs/{derived['id']}").json() == derived
+
+
+def test_conditions_are_kept_as_what_they_come_to(client: TestClient) -> None:
+    weak = {"palsy": {"side": "left", "grade": "IV"}, "tissue_age": "old"}
+    first = client.post("/api/rigs", json=weak)
+    assert first.status_code == 201, first.text
+    assert client.post("/api/rigs", json=weak).json()["id"] == first.json()["id"]
+    gains = {m["name"]: m["gain"] for m in first.json()["muscles"]}
+    assert gains["zygomatic_major.L"] == [0.4, 1.0]
+    relaxed = {"base": first.json()["id"], "relaxed": {"procerus": {"left": 0.5}}}
+    second = client.post("/api/rigs", json=relaxed)
+    assert second.status_code == 201, second.text
+    after = second.json()
+    assert after["tissue"]["muscle_strength"] == first.json()["tissue"]["muscle_strength"] < 1.0
+    assert {m["name"]: m["gain"] for m in after["muscles"]}["zygomatic_major.L"] == [0.4, 1.0]
+
+
+def test_a_thickness_map_may_come_by_node(client: TestClient) -> None:
+    count = client.get("/api/rigs/standard").json()["mesh"]["tissue_nodes"] // 3
+    answer = client.post("/api/rigs", json={"tissue": {"skin_thickness": [2.0] * count}})
+    assert answer.status_code == 201, answer.text
+    assert answer.json()["tissue"]["skin_thickness"] == [2.0] * count
