@@ -468,7 +468,7 @@ def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high"
     """
     rig = rig_from_head(
         person_head(recipe, level),
-        parameters=TissueParameters().edited(tissue_of_life(recipe)),
+        parameters=_living_tissue(recipe),
         fitted_on=person_head(STANDARD, level),
     )
     strength = muscle_strength(recipe) / muscle_strength(STANDARD)
@@ -520,6 +520,19 @@ def _pulling_as_much(left: list[Muscle], head: Head, fitted_on: Head) -> list[Mu
         else replace(muscle, force_scale=muscle.force_scale * float(share))
         for muscle, share in zip(left, shares, strict=True)
     ]
+
+
+def _living_tissue(recipe: Recipe) -> TissueParameters:
+    """Return the usual tissue with what is left of it at the recipe's age, sex and weight."""
+    usual = TissueParameters()
+    edits: dict[str, object] = {}
+    for name, share in tissue_of_life(recipe).items():
+        value = getattr(usual, name)
+        if isinstance(share, dict):
+            edits[name] = {layer: getattr(value, layer) * part for layer, part in share.items()}
+        else:
+            edits[name] = value * share
+    return usual.edited(edits)
 
 
 def _as_strong(muscle: Muscle, strength: float) -> Muscle:

@@ -7,8 +7,17 @@ import json
 import numpy as np
 import pytest
 
-from engine import InvalidValue, Keyframe, Model, UnknownName, builtin_rig
+from engine import (
+    InvalidValue,
+    Keyframe,
+    Model,
+    Recipe,
+    UnknownName,
+    builtin_rig,
+    rig_from_recipe,
+)
 from engine.muscle import LidMuscle
+from engine.tissue import TissueParameters
 
 TABLE_1 = (1, 2, 4, 5, 6, 7, 9, 10, 12, 14, 15, 16, 17, 20, 23, 25, 26)
 
@@ -60,6 +69,16 @@ def test_a_level_changes_no_id_whatever_is_edited(standard_rig, edit):
     back = edited.at_level("high")
     assert back.id == edited.id
     assert len(back.head.drawn.vertices) == len(standard_rig.head.drawn.vertices)
+
+
+def test_what_is_left_of_the_tissue_is_left_of_the_usual_one():
+    usual = rig_from_recipe(Recipe(age=20.0), level="low").parameters
+    assert usual == TissueParameters()
+    old = rig_from_recipe(Recipe(age=85.0), level="low").parameters
+    assert old.pretension == pytest.approx(0.65 * usual.pretension)
+    assert old.stiffness_low.dermis == pytest.approx(0.70 * usual.stiffness_low.dermis)
+    assert old.stiffness_low.epidermis == pytest.approx(1.15 * usual.stiffness_low.epidermis)
+    assert old.plate == usual.plate
 
 
 def test_who_looks_otherwise_has_another_id(standard_rig):

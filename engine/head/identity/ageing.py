@@ -182,26 +182,28 @@ def depth_of_life(recipe: Recipe, depth: FloatArray) -> FloatArray:
     return np.asarray(depth * (1.0 + soft * np.clip(change, -0.3, 0.3)))
 
 
-def tissue_of_life(recipe: Recipe) -> dict[str, object]:
-    """Return the tissue parameters that the recipe's age, sex and weight change, as edits."""
+def tissue_of_life(recipe: Recipe) -> dict[str, float | dict[str, float]]:
+    """Return the shares of the usual tissue parameters that the recipe's age, sex and weight leave.
+
+    Parameters that are not named stay as they are; layered ones have shares by layer.
+    """
     shown = years_shown(recipe.age, 25.0, 85.0)
     female = 1.0 - recipe.sex
-    if shown == 0.0 and female == 0.0 and recipe.weight == 0.0 and recipe.age >= 25.0:
+    if shown == 0.0 and female == 0.0 and recipe.weight == 0.0:
         return {}
-    slack = 1.0 - 0.30 * shown
     return {
-        "pretension": 0.12 * (1.0 - 0.35 * shown) * (1.0 - 0.03 * female),
-        "strain_threshold": 0.15 + 0.05 * shown,
+        "pretension": (1.0 - 0.35 * shown) * (1.0 - 0.03 * female),
+        "strain_threshold": 1.0 + shown / 3.0,
         "stiffness_low": {
-            "epidermis": 50.0 * (1.0 + 0.15 * shown),
-            "dermis": 20.0 * slack * (1.0 - 0.08 * female),
-            "hypodermis": 30.0 * (1.0 - 0.15 * shown) * (1.0 - 0.04 * recipe.weight),
+            "epidermis": 1.0 + 0.15 * shown,
+            "dermis": (1.0 - 0.30 * shown) * (1.0 - 0.08 * female),
+            "hypodermis": (1.0 - 0.15 * shown) * (1.0 - 0.04 * recipe.weight),
         },
         "stiffness_high": {
-            "epidermis": 100.0 * (1.0 + 0.15 * shown),
-            "dermis": 40.0 * (1.0 + 0.10 * shown) * (1.0 - 0.05 * female),
+            "epidermis": 1.0 + 0.15 * shown,
+            "dermis": (1.0 + 0.10 * shown) * (1.0 - 0.05 * female),
         },
-        "fat_pressure": 120.0 * (1.0 - 0.35 * shown) * (1.0 + 0.08 * recipe.weight),
-        "ligament": 3.0 * (1.0 - 0.20 * shown),
-        "damping": 40.0 * (1.0 - 0.08 * shown),
+        "fat_pressure": (1.0 - 0.35 * shown) * (1.0 + 0.08 * recipe.weight),
+        "ligament": 1.0 - 0.20 * shown,
+        "damping": 1.0 - 0.08 * shown,
     }
