@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .head import Head
+from ..arrays import FloatArray
 
 MEASUREMENTS: Mapping[str, tuple[str, str]] = {
     "tr-n": ("tr", "n"),  # height of the forehead
@@ -109,14 +109,15 @@ def norms(sex: float) -> Mapping[str, Norm]:
     }
 
 
-def measured(head: Head) -> Mapping[str, float]:
-    """Return each measurement of a head's drawn skin at rest, mm.
+def measured(landmarks: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Return each measurement, mm, between landmarks such as `Head.landmark_places`.
 
     Raises:
-        KeyError: The head lacks a landmark, as meshes from files do.
+        KeyError: A landmark is missing, as on meshes from files.
     """
-    at = {name: head.drawn.vertices[index] for name, index in head.landmarks.items()}
-    spans = {name: at[first] - at[second] for name, (first, second) in MEASUREMENTS.items()}
+    spans = {
+        name: landmarks[first] - landmarks[second] for name, (first, second) in MEASUREMENTS.items()
+    }
     return {
         name: float(abs(span[1]) if name in PROJECTED else np.linalg.norm(span))
         for name, span in spans.items()

@@ -208,6 +208,11 @@ class Head:
     def _index(self) -> dict[str, int]:
         return {name: index for index, name in enumerate(self.names) if name}
 
+    @cached_property
+    def landmark_places(self) -> Mapping[str, FloatArray]:
+        """Where each landmark lies at rest, mm, shape (3,)."""
+        return {name: self.drawn.vertices[index] for name, index in self.landmarks.items()}
+
     def point(self, name: str) -> int:
         """Return the index of the tissue point called `name`.
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from ...arrays import FloatArray
-from ..anthropometry import MEASUREMENTS, PROJECTED, norms
+from ..anthropometry import measured, norms
 from ..recipe import STANDARD, Recipe
 from .ageing import form_of_life, measures_of_age
 from .modes import MEASURED
@@ -78,17 +78,6 @@ NEAR = 0.6
 """Share of its tolerance within which a measure of the built-in head counts as the norm's."""
 
 
-def measures(landmarks: Mapping[str, FloatArray]) -> dict[str, float]:
-    """Return the measurements between landmarks, mm."""
-    spans = {
-        name: landmarks[first] - landmarks[second] for name, (first, second) in MEASUREMENTS.items()
-    }
-    return {
-        name: float(abs(span[1]) if name in PROJECTED else np.linalg.norm(span))
-        for name, span in spans.items()
-    }
-
-
 def tolerance(mean: float) -> float:
     """Return how far a measure may lie from what is asked: 5 % or 2 mm, mm."""
     return max(2.0, 0.05 * mean)
@@ -154,7 +143,7 @@ def amplitudes_of(recipe: Recipe, warped: Warped) -> dict[str, float]:
         warped: Where the landmarks lie for given amplitudes.
     """
     given = given_forms(recipe)
-    reference = measures(warped({}))
+    reference = measured(warped({}))
     wanted = targets(recipe, reference)
     if not given and asked(recipe) == asked(STANDARD):
         return {}
@@ -165,7 +154,7 @@ def amplitudes_of(recipe: Recipe, warped: Warped) -> dict[str, float]:
 
     def residual(values: FloatArray) -> FloatArray:
         fitted = dict(zip(FITTED, values, strict=True))
-        found = measures(warped(_sum(given, fitted)))
+        found = measured(warped(_sum(given, fitted)))
         off = np.array([found[name] for name in names]) - goal
         return np.asarray(off * weight / scale)
 

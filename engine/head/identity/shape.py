@@ -120,7 +120,7 @@ def warp_of(recipe: Recipe, reference: Head) -> Warp:
         reference: The built-in head at any level.
     """
     anchors = anchors_of(reference)
-    landmarks = {name: reference.drawn.vertices[i] for name, i in reference.landmarks.items()}
+    landmarks = reference.landmark_places
     names, places = list(landmarks), np.array(list(landmarks.values()))
 
     # Every mode moves a place in proportion: so its effect on each landmark is found once.
@@ -147,10 +147,10 @@ def anchors_of(reference: Head) -> dict[str, FloatArray]:
         stem, _, side = name.partition(".")
         if side != "R":
             anchors[stem] = place
-    for name, index in reference.landmarks.items():
+    for name, place in reference.landmark_places.items():
         stem, _, side = name.partition(".")
         if side != "R":
-            anchors[stem] = reference.drawn.vertices[index]
+            anchors[stem] = place
     anchors["eye"] = reference.eyes[0].center
     return anchors
 

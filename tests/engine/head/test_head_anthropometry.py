@@ -15,12 +15,12 @@ STANDARD = norms(1.0)
 def test_standard_head_is_the_norm(head: Head, name: str) -> None:
     """Every row, taken at the landmarks' vertices, is within 5 % or 2 mm of the men's mean."""
     mean = STANDARD[name].mean
-    assert abs(measured(head)[name] - mean) < max(2.0, 0.05 * mean)
+    assert abs(measured(head.landmark_places)[name] - mean) < max(2.0, 0.05 * mean)
 
 
 def test_profile(head: Head) -> None:
     """Angles and distances of the profile are those of a man's face, in the sagittal plane."""
-    at = {name: head.drawn.vertices[index, 1:] for name, index in head.landmarks.items()}
+    at = {name: place[1:] for name, place in head.landmark_places.items()}
 
     def angle(first: str, corner: str, second: str) -> float:
         one, other = at[first] - at[corner], at[second] - at[corner]
@@ -42,7 +42,7 @@ def test_profile(head: Head) -> None:
 
 def test_frame(head: Head) -> None:
     """The pupil line is y = 0, the nose points along +z, the left is +x."""
-    at = {name: head.drawn.vertices[index] for name, index in head.landmarks.items()}
+    at = head.landmark_places
     assert abs(at["en.L"][1]) < 2
     assert abs(at["ex.L"][1]) < 2
     assert at["ex.L"][0] > 0

@@ -11,7 +11,7 @@ import pytest
 from engine.head import STANDARD, Head, Recipe, people
 from engine.head.anthropometry import measured
 from engine.head.identity import person_from, warp_of
-from engine.head.identity.fit import measures, targets, tolerance
+from engine.head.identity.fit import targets, tolerance
 from engine.head.standard import reference_head
 
 RECIPES = {
@@ -40,11 +40,11 @@ def test_the_built_in_recipe_moves_nothing(head: Head) -> None:
 @pytest.mark.parametrize("name", RECIPES)
 def test_a_person_measures_what_the_recipe_asks(head: Head, name: str) -> None:
     recipe = RECIPES[name]
-    wanted = targets(recipe, measured(head))
+    wanted = targets(recipe, measured(head.landmark_places))
     warp = warp_of(recipe, head)
-    places = {mark: head.drawn.vertices[index] for mark, index in head.landmarks.items()}
+    places = head.landmark_places
     moved = dict(zip(places, warp(np.array(list(places.values()))), strict=True))
-    found = measures(moved)
+    found = measured(moved)
     off = {
         measure: (found[measure], goal)
         for measure, goal in wanted.items()

@@ -27,7 +27,7 @@ def test_standard_deviations_are_those_of_people() -> None:
 
 
 def test_measures_from_point_to_point(head: Head) -> None:
-    found = measured(head)
+    found = measured(head.landmark_places)
     assert set(found) == set(MEASUREMENTS)
     left = head.drawn.vertices[head.landmarks["zy.L"]]
     assert found["zy-zy"] == pytest.approx(2 * left[0])
