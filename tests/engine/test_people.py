@@ -10,12 +10,13 @@ from engine.measure import measure_units, settle
 
 NEAR = 0.15
 """Share of a range's ends by which a face that is larger or smaller may pass them."""
-MOST_OUTSIDE = 2
-"""Landmarks of 24 that may still lie outside: slack old brows draw together farther."""
+FARTHER = {("AU4", "inner brow medial"): 4.0}
+"""What the slack skin of the old lets a landmark reach beyond it, mm: brows that draw together, 3.9
+on Ruth and 3.6 on Ingrid, where the young reach 3."""
 
 
 @pytest.mark.parametrize("name", people())
-def test_every_unit_moves_the_right_way_and_most_within_human_range(name: str) -> None:
+def test_every_unit_moves_the_right_way_and_within_human_range(name: str) -> None:
     rig = rig_from_recipe(people()[name].recipe, name=name, level="low")
     measured = measure_units(rig, seconds=0.5)
     wrong = [(m.landmark.unit, m.landmark.what, m.value) for m in measured if not m.direction_right]
@@ -25,9 +26,9 @@ def test_every_unit_moves_the_right_way_and_most_within_human_range(name: str) -
         for m in measured
         if not m.landmark.low - NEAR * abs(m.landmark.low)
         <= m.value
-        <= (1.0 + NEAR) * m.landmark.high
+        <= FARTHER.get((m.landmark.unit, m.landmark.what), (1.0 + NEAR) * m.landmark.high)
     ]
-    assert len(outside) <= MOST_OUTSIDE, outside
+    assert not outside
 
 
 @pytest.mark.parametrize("sex", ["female", "male"])

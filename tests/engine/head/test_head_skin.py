@@ -9,7 +9,7 @@ from engine.errors import UnknownName
 from engine.head import Head, standard_head
 from engine.head.geometry import triangle_areas
 from engine.head.graded import smallest_angles
-from engine.head.hairline import distance_inside, inside_outline
+from engine.head.hairline import HIDDEN_SCALP, distance_inside, inside_outline
 from engine.head.topology import Topology, boundary_loops, components
 
 ALL = ("low", "medium", "high", "paper")
@@ -74,7 +74,7 @@ def test_normals_and_colors(heads: dict[str, Head], level: str) -> None:
     assert drawn.colors.min() >= 0
     assert drawn.colors.max() <= 1
     assert drawn.hair.min() >= 0
-    assert 0.9 < drawn.hair.max() <= 1
+    assert drawn.hair.max() == pytest.approx(HIDDEN_SCALP)
     nose = heads[level].landmarks["prn"]
     assert drawn.normals[nose, 2] > 0.8
 
@@ -102,7 +102,8 @@ def test_lips_are_redder_than_the_forehead(head: Head) -> None:
 def test_hair_grows_on_the_scalp_only(head: Head) -> None:
     drawn = head.drawn
     names = np.array(drawn.region_names)[drawn.regions]
-    assert drawn.hair[names == "scalp"].mean() > 0.6
+    # The scalp reaches below the hairline at ear and nape: 0.72 to 0.75 of it, by level.
+    assert drawn.hair[names == "scalp"].mean() > 0.71
     assert drawn.hair[np.isin(names, ["cheek", "nose", "chin", "brow"])].max() < 0.05
 
 

@@ -100,8 +100,11 @@ def test_upper_lid_crease_is_sharper_than_a_smooth_one(sculpture: Sculpture) -> 
     cage = sculpture.cage
     topology = sculpture.limit.levels[0].topology
     smooth = limit_surface(cage_level(topology, cage.mirror, np.zeros(len(topology.edges))))
-    first, second = cage.left["E2_4"], cage.left["E2_5"]
-    middle = topology.vertex_count + int(topology.edge_index(np.array(first), np.array(second)))
-    creased = sculpture.limit.positions(sculpture.points, 1)[middle]
-    plain = smooth.positions(sculpture.points, 1)[middle]
-    assert np.linalg.norm(creased - plain) > 0.001
+    row = np.array([cage.left[f"E2_{spoke}"] for spoke in range(2, 7)])
+    middles = topology.vertex_count + topology.edge_index(row[:-1], row[1:])
+    creased = sculpture.limit.positions(sculpture.points, 1)[middles]
+    plain = smooth.positions(sculpture.points, 1)[middles]
+    moved = np.linalg.norm(creased - plain, axis=1)
+    # Least over the pupil, where the faired row runs nearly straight: 0.0065 mm; at its ends 0.03.
+    assert moved.min() > 0.006
+    assert moved.max() > 0.03
