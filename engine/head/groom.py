@@ -61,6 +61,3 @@ def _from_arrays(arrays: Arrays) -> list[Part]:
         for name in GROOMED
         if f"{name}.vertices" in arrays
     ]
-
-
-__all__ = ["groomed"]

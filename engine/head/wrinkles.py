@@ -91,15 +91,13 @@ class Wrinkles:
     """Gauges and how they spread over the drawn skin.
 
     Attributes:
-        sites: Site of each gauge, with its side, length g.
-        first: Tissue point at one end, shape (g,).
+        first: Tissue point at one end of each gauge, shape (g,).
         second: At the other, shape (g,).
         rest: Length below which skin folds, a little less than at rest [mm], shape (g,).
         gain: Strength per share of length lost, shape (g,).
         spread: Strength at drawn vertices from that of gauges, sparse (d, g).
     """
 
-    sites: tuple[str, ...]
     first: IntArray
     second: IntArray
     rest: FloatArray
@@ -128,10 +126,9 @@ def wrinkles_of(head: Head) -> Wrinkles | None:
     reference = head.drawn.reference
     if reference is None:
         return None
-    names, first, second, gain, taut, columns = [], [], [], [], [], []
+    first, second, gain, taut, columns = [], [], [], [], []
     for gauge in GAUGES:
         for side in _sides(gauge):
-            names.append(gauge.site + side)
             first.append(head.point(_on(gauge.first, side)))
             second.append(head.point(_on(gauge.second, side)))
             gain.append(gauge.gain)
@@ -141,7 +138,6 @@ def wrinkles_of(head: Head) -> Wrinkles | None:
     spread[np.abs(spread) < _LEAST] = 0
     ends = head.points[first], head.points[second]
     return Wrinkles(
-        sites=tuple(names),
         first=np.array(first),
         second=np.array(second),
         rest=np.array(taut) * np.linalg.norm(ends[0] - ends[1], axis=1),

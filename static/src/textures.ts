@@ -18,14 +18,13 @@ const BLANK = {
   orm: [255, 128, 0, 255],
   wrinkles: [128, 128, 255, 255],
   eye: [255, 255, 255, 255],
-  hair: [255, 255, 255, 255],
 } as const;
 
 export type MapName = keyof typeof BLANK;
 
 const NAMES = Object.keys(BLANK) as MapName[];
 /** Maps that hold a colour; the others hold numbers. */
-const COLOURS: readonly MapName[] = ['albedo', 'eye', 'hair'];
+const COLOURS: readonly MapName[] = ['albedo', 'eye'];
 /** Skin turns away from the camera everywhere on a head: without it the cheeks' sides blur. */
 const ANISOTROPY = 8;
 /** How long vertex colours take to give way to the maps [ms]. */
