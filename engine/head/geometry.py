@@ -36,6 +36,12 @@ def vertex_normals(
     return np.asarray(np.where(length > 1e-12, normal / np.maximum(length, 1e-12), [0.0, 0.0, 1.0]))
 
 
+def unit(vectors: FloatArray) -> FloatArray:
+    """Return vectors (…, 3) at length one; those without a length stay as they are."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.maximum(length, 1e-9))
+
+
 def triangle_areas(vertices: FloatArray, triangles: IntArray) -> FloatArray:
     """Return the areas [mm^2] of triangles, shape (t,)."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray, IntArray
+from ..geometry import unit
 from ..head import DrawnSurface, Part
 from .strand_texture import LANES, MARGIN, WIDTH, lane_edges
 
@@ -88,8 +89,7 @@ def _strips(cards: Cards) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
     half = 0.5 * cards.widths[..., None] * cards.sides
     vertices = np.stack([cards.lines - half, cards.lines + half], axis=2)
     lean = ROUNDNESS * cards.sides
-    normals = np.stack([cards.normals - lean, cards.normals + lean], axis=2)
-    normals /= np.maximum(np.linalg.norm(normals, axis=3, keepdims=True), 1e-9)
+    normals = unit(np.stack([cards.normals - lean, cards.normals + lean], axis=2))
     colors = np.repeat(cards.colors[:, :, None, :], 2, axis=2)
 
     edges = np.array([lane_edges(lane) for lane in range(len(LANES))])[cards.lanes]

@@ -9,7 +9,8 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ..anatomy import smoothstep
-from ..hair_color import hair_color, strand_colors
+from ..geometry import unit
+from ..hair_color import strand_colors
 from ..hairline import hair_mask
 from ..head import DrawnSurface, Part
 from ..noise import noise as smooth_noise
@@ -103,6 +104,10 @@ class _Grown:
     tangents: FloatArray
 
 
+def _grown(lines: FloatArray, normals: FloatArray) -> _Grown:
+    return _Grown(lines, normals, unit(np.gradient(lines, axis=1)))
+
+
 Grow = Callable[
     [Scalp, Style, FloatArray, FloatArray, FloatArray, int, np.random.Generator], _Grown
 ]
@@ -167,8 +172,7 @@ def _cards(
 ) -> Cards:
     count = len(grown.lines)
     along = np.linspace(0, 1, grown.lines.shape[1])
-    across = np.cross(grown.tangents, grown.normals)
-    across /= np.maximum(np.linalg.norm(across, axis=2, keepdims=True), 1e-9)
+    across = unit(np.cross(grown.tangents, grown.normals))
     up = np.cross(across, grown.tangents)
     loose = np.where(lanes >= LOOSE.start, 0.4, 1.0)
     roll = noise.normal(0, 0.38, count)[:, None] + noise.normal(0, 0.3, count)[:, None] * along
@@ -228,10 +232,7 @@ def _combed(
         place = place + np.where(lack < 0, (1 - stiffness) * lack, lack)[:, None] * normal
         lines.append(place)
         normals.append(normal)
-    grown = np.stack(lines, axis=1)
-    tangents = np.gradient(grown, axis=1)
-    tangents /= np.maximum(np.linalg.norm(tangents, axis=2, keepdims=True), 1e-9)
-    return _Grown(grown, np.stack(normals, axis=1), tangents)
+    return _grown(np.stack(lines, axis=1), np.stack(normals, axis=1))
 
 
 def _hanging(
@@ -262,22 +263,16 @@ def _hanging(
         share = (k + 1) / pieces
         over = turned(flow(scalp, style, place, normal), normal, turn)
         drop = np.column_stack([np.zeros((count, 1)), np.full((count, 1), -1.0), np.zeros(count)])
-        heading = over + fallen * (drop - over)
-        heading /= np.maximum(np.linalg.norm(heading, axis=1, keepdims=True), 1e-9)
+        heading = unit(over + fallen * (drop - over))
         place = place + step[:, None] * heading
         below = place[:, 1] < HEM + 22
-        inwards = place * [1.0, 0.0, 1.0] - [0, 0, HANG_AXIS[1]]
-        inwards /= np.maximum(np.linalg.norm(inwards, axis=1, keepdims=True), 1e-9)
-        place = place - np.where(below, 0.16 * step, 0.0)[:, None] * inwards
+        place = place - np.where(below, 0.16 * step, 0.0)[:, None] * _from_axis(place)
         lifted = rise * min(1.0, 0.35 + 2.5 * share)
         place, normal = _clear(scalp, place, lifted)
         fallen = np.maximum(fallen, smoothstep(0.35, 0.1, normal[:, 1:2]))
         lines.append(place)
         normals.append(normal)
-    grown = np.stack(lines, axis=1)
-    tangents = np.gradient(grown, axis=1)
-    tangents /= np.maximum(np.linalg.norm(tangents, axis=2, keepdims=True), 1e-9)
-    return _Grown(grown, np.stack(normals, axis=1), tangents)
+    return _grown(np.stack(lines, axis=1), np.stack(normals, axis=1))
 
 
 def _clear(scalp: Scalp, points: FloatArray, lifted: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -301,11 +296,15 @@ def _clear(scalp: Scalp, points: FloatArray, lifted: FloatArray) -> tuple[FloatA
     face = FACE_EDGE + 0.25 * np.maximum(points[:, 1] - 10, 0) - 1.6 * lifted
     face += 60 * smoothstep(35, 78, points[:, 1])
     points[:, 2] = np.minimum(points[:, 2], face)
-    outward = points * [1.0, 0.0, 1.0] - [0, 0, HANG_AXIS[1]]
-    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
+    outward = _from_axis(points)
     low = smoothstep(20, -30, points[:, 1])[:, None]
     mixed = normal + low * (outward - normal)
-    return points, mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-9)
+    return points, unit(mixed)
+
+
+def _from_axis(points: FloatArray) -> FloatArray:
+    """Return the level unit vectors from the axis that hanging hair turns in to, (n, 3)."""
+    return unit(points * [1.0, 0.0, 1.0] - [0, 0, HANG_AXIS[1]])
 
 
 def _to_side(from_ear: FloatArray, aside: FloatArray, layer: FloatArray) -> FloatArray:
@@ -333,8 +332,7 @@ def _coiled(
     stray = noise.normal(0, style.ruffle, (count, 3))
     axis = normal * (rise / length)[:, None] * 1.5 + stray + [0, -0.15, 0]
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
-    first = np.cross(axis, noise.normal(0, 1, (count, 3)))
-    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-9)
+    first = unit(np.cross(axis, noise.normal(0, 1, (count, 3))))
     second = np.cross(axis, first)
     along = np.linspace(0, 1, pieces + 1)
     turns = length / COIL_LENGTH * noise.uniform(0.8, 1.25, count)
@@ -342,9 +340,9 @@ def _coiled(
     angle = 2 * np.pi * turns[:, None] * along[None, :] * noise.choice([-1, 1], count)[:, None]
     distance = (0.78 * length)[:, None] * along[None, :]
     lines = (roots - ROOT_DEPTH * normal)[:, None] + distance[..., None] * axis[:, None]
-    lines = lines + (radius * (np.cos(angle) - 1 * (along < 0)))[..., None] * first[:, None]
+    lines = lines + (radius * np.cos(angle))[..., None] * first[:, None]
     lines = lines + (radius * np.sin(angle))[..., None] * second[:, None]
-    flat, least = lines[:, 1:].reshape(-1, 3), np.repeat(along[1:] * 3.0, count)
+    flat = lines[:, 1:].reshape(-1, 3)
     height, _ = scalp.height(flat)
     least = np.tile(along[1:] * 3.0, count)
     ground = np.repeat(normal, pieces, axis=0)
@@ -352,15 +350,12 @@ def _coiled(
     over_face = (flat[:, 2] > 62) & (flat[:, 1] < 62)
     flat[:, 1] = np.where(over_face, 62 + 0.2 * (flat[:, 1] - 62), flat[:, 1])
     lines = np.concatenate([lines[:, :1], flat.reshape(count, pieces, 3)], axis=1)
-    tangents = np.gradient(lines, axis=1)
-    tangents /= np.maximum(np.linalg.norm(tangents, axis=2, keepdims=True), 1e-9)
     # A curl faces away from its own axis, and from the head.
     curl = radius[..., None] * (
         np.cos(angle)[..., None] * first[:, None] + np.sin(angle)[..., None] * second[:, None]
     )
     faces = normal[:, None] + 0.16 * curl
-    faces /= np.linalg.norm(faces, axis=2, keepdims=True)
-    return _Grown(lines, faces, tangents)
+    return _grown(lines, unit(faces))
 
 
 def flow(scalp: Scalp, style: Style, points: FloatArray, normals: FloatArray) -> FloatArray:
@@ -393,7 +388,7 @@ def flow(scalp: Scalp, style: Style, points: FloatArray, normals: FloatArray) ->
         0.45 * whorl * heading + fallen
     )
     heading -= normals * (heading * normals).sum(axis=1, keepdims=True)
-    return np.asarray(heading / np.maximum(np.linalg.norm(heading, axis=1, keepdims=True), 1e-9))
+    return unit(heading)
 
 
 def front(points: FloatArray) -> FloatArray:
@@ -450,6 +445,3 @@ def _single(scalp: Scalp, grown: _Grown, width: FloatArray, noise: np.random.Gen
         width=width,
         colors=strand_colors(scalp.recipe, len(width), noise),
     )
-
-
-__all__ = ["flow", "hair_color", "hair_parts", "turned"]

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray
-from ..geometry import triangle_areas
+from ..geometry import triangle_areas, unit
 from ..hairline import hair_mask
 from ..head import DrawnSurface
 from ..recipe import Recipe
@@ -52,8 +52,7 @@ class Scalp:
         normals = self._ground_normals[near]
         off = np.einsum("nkx,nkx->nk", points[:, None] - self._ground[near], normals)
         mean = np.einsum("nk,nkx->nx", weight, normals)
-        mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-9)
-        return np.asarray((weight * off).sum(axis=1)), mean
+        return np.asarray((weight * off).sum(axis=1)), unit(mean)
 
     def scatter(
         self, style: Style, density: Measures, noise: np.random.Generator, *, least: float = 0.03

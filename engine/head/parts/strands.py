@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray, IntArray
+from ..geometry import unit
 from ..head import DrawnSurface, Part
 
 CANDIDATES = 24
@@ -86,14 +87,12 @@ def _ribbons(strands: Strands) -> tuple[FloatArray, FloatArray, IntArray]:
     """Return vertices, normals and triangles: two vertices a point, one at the tip."""
     lines, normals = strands.lines, strands.normals
     count, points = lines.shape[:2]
-    side = np.cross(np.gradient(lines, axis=1), normals)
-    side /= np.maximum(np.linalg.norm(side, axis=2, keepdims=True), 1e-9)
+    side = unit(np.cross(np.gradient(lines, axis=1), normals))
     taper = np.linspace(1.0, 0.0, points) ** 0.7
     half = 0.5 * strands.width[:, None, None] * taper[None, :, None]
     edges = np.stack([lines - side * half, lines + side * half], axis=2)
     vertices = edges.reshape(count, 2 * points, 3)[:, :-1]
-    shading = np.repeat(normals, 2, axis=1)[:, :-1]
-    shading = shading / np.maximum(np.linalg.norm(shading, axis=2, keepdims=True), 1e-9)
+    shading = unit(np.repeat(normals, 2, axis=1)[:, :-1])
     one = [[i, i + 1, i + 2] if i % 2 == 0 else [i + 1, i, i + 2] for i in range(2 * points - 3)]
     triangles = np.array(one)[None] + (2 * points - 1) * np.arange(count)[:, None, None]
     return vertices.reshape(-1, 3), shading.reshape(-1, 3), triangles.reshape(-1, 3)
@@ -129,8 +128,7 @@ class FrontView:
         best = front.argmax(axis=1)
         row = np.arange(len(points))
         normal = (weights[row, best][:, :, None] * self._normals[near[row, best]]).sum(axis=1)
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-        return position[row, best], normal, inside[row, best]
+        return position[row, best], unit(normal), inside[row, best]
 
 
 def _cross(first: FloatArray, second: FloatArray) -> FloatArray:
