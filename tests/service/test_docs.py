@@ -11,7 +11,7 @@ import pytest
 from conftest import api_routes, settings_in
 from typer.testing import CliRunner
 
-from engine import builtin_rig
+from engine import builtin_rig, recipe_attributes
 from service.app import create_app
 from service.cli import app as command_line
 from service.protocol import __doc__ as layout
@@ -48,6 +48,27 @@ def test_every_setting_is_documented(api: str, name: str) -> None:
     meaning = Settings.model_fields[name].description
     assert meaning
     assert re.search(rf"^\| `RISORIUS_{name.upper()}` \| .+ \| {re.escape(meaning)} \|$", api, re.M)
+
+
+def test_every_attribute_of_a_recipe_is_documented_as_it_is(api: str) -> None:
+    rows = re.findall(
+        r"^\| `(\w+)` \| (.+) \| (sd|years|share|times|name|number) \| (.+) \| (.+) \|$", api, re.M
+    )
+    table = {name: (values, default) for name, values, _, default, _ in rows}
+    meanings = {name: meaning for name, *_, meaning in rows}
+    assert table.pop("sample")
+    expected = {}
+    for name, attribute in recipe_attributes().items():
+        values, default = "0 to 4294967295", attribute["default"]
+        if "range" in attribute:
+            values = "{:g} to {:g}".format(*attribute["range"])
+        elif "choices" in attribute:
+            values = ", ".join(f"`{choice}`" for choice in attribute["choices"])
+        expected[name] = (values, f"`{default}`" if isinstance(default, str) else f"{default:g}")
+        for word, number in attribute.get("words", {}).items():
+            assert f"`{word}` {number:g}" in meanings[name]
+    assert table == expected
+    assert list(table) == list(expected)
 
 
 def test_every_command_is_documented_and_has_help(api: str) -> None:
