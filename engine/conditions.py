@@ -9,8 +9,7 @@ from typing import Any
 
 from .errors import InvalidValue, UnknownName
 from .head import Recipe, muscle_strength, tissue_of_life
-from .rig import Rig
-from .tissue import TissueParameters
+from .rig import Rig, living_tissue
 
 TISSUE_AGES: Mapping[str, float] = {"young": 22.0, "middle": 50.0, "old": 78.0}
 """Years of each preset of the tissue's age."""
@@ -91,7 +90,7 @@ def tissue_at_age(recipe: Recipe, age: object) -> dict[str, Any]:
     else:
         years = _number("tissue_age", age, *AGE_LIMITS)
     aged = replace(recipe, age=years)
-    target = TissueParameters().edited(tissue_of_life(aged))
+    target = living_tissue(aged)
     # All that age touches is set, not only what differs: a preset undoes an earlier one.
     touched = tissue_of_life(replace(recipe, age=AGE_LIMITS[1]))
     plain = target.to_json()

@@ -468,7 +468,7 @@ def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high"
     """
     rig = rig_from_head(
         person_head(recipe, level),
-        parameters=_living_tissue(recipe),
+        parameters=living_tissue(recipe),
         fitted_on=person_head(STANDARD, level),
     )
     strength = muscle_strength(recipe) / muscle_strength(STANDARD)
@@ -522,7 +522,7 @@ def _pulling_as_much(left: list[Muscle], head: Head, fitted_on: Head) -> list[Mu
     ]
 
 
-def _living_tissue(recipe: Recipe) -> TissueParameters:
+def living_tissue(recipe: Recipe) -> TissueParameters:
     """Return the usual tissue with what is left of it at the recipe's age, sex and weight."""
     usual = TissueParameters()
     edits: dict[str, object] = {}
