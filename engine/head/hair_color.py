@@ -25,6 +25,9 @@ NATURAL: Mapping[str, tuple[float, float, float]] = {
 }
 GRAY = np.array([0.43, 0.43, 0.43])
 """A hair without pigment among others, in shade of its neighbours."""
+SHORN = ("bald", "buzz", "receding")
+"""Styles through which light reaches the scalp; under all others, of it:"""
+UNDER_LONG_HAIR = 0.5
 DARKEST_BROW = 0.30
 """Brows and lashes of fair people are darker than their hair, towards this share of it."""
 
@@ -37,7 +40,8 @@ def hair_color(recipe: Recipe = STANDARD) -> FloatArray:
 
 def scalp_color(recipe: Recipe = STANDARD) -> FloatArray:
     """Return what the scalp is shaded with under hair: roots in each other's shadow, shape (3,)."""
-    return np.asarray(hair_color(recipe) * np.array([0.62, 0.58, 0.56]))
+    shade = 1.0 if recipe.hair_style in SHORN else UNDER_LONG_HAIR
+    return np.asarray(hair_color(recipe) * shade * np.array([0.62, 0.58, 0.56]))
 
 
 def strand_colors(

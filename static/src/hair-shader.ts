@@ -84,7 +84,7 @@ material.specularF90 *= 0.25;
 const CUT = /* glsl */ `
 #ifdef USE_MAP
   vec3 cardFaces = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));
-  diffuseColor.a *= smoothstep(0.02, 0.38, abs(dot(cardFaces, normalize(vViewPosition))));
+  diffuseColor.a *= smoothstep(0.0, 0.24, abs(dot(cardFaces, normalize(vViewPosition))));
   diffuseColor.a = clamp(diffuseColor.a * 1.2, 0.0, 1.0);
   float grain = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   diffuseColor.a = clamp(diffuseColor.a + (grain - 0.5) * 0.22 * step(0.02, diffuseColor.a) * step(diffuseColor.a, 0.98), 0.0, 1.0);

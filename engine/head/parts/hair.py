@@ -40,10 +40,15 @@ LONGEST_SINGLE = 42.0
 """Length of a single hair that stands off, at most, mm."""
 SINGLE_PIECES = 2
 """Pieces of a single hair."""
+STANDING = 22.0
+"""How high hair stands over the front hairline at most, mm."""
 LEAST = 0.5
 """No card grows where hair is thinner than this, or it would stand alone as a tuft."""
 HEM = -96.0
 """Where a bob ends, mm: at the chin."""
+PARTING_HALF = 0.5
+"""Half the width of a parting, mm, and how far from it hair still begins at it:"""
+PARTING_REACH = 8.0
 HANG_AXIS = np.array([0.0, -8.0])
 """Middle of the head that hanging hair turns in to, as (x, z), mm."""
 FACE_EDGE = 44.0
@@ -124,13 +129,16 @@ def _card_groups(scalp: Scalp, style: Style, grow: Grow, noise: np.random.Genera
     layer = noise.uniform(0, 1, count) ** 0.8
     length = style.at(style.length, y) * (0.4 + 0.6 * thin) * noise.uniform(0.72, 1.15, count)
     rise = style.at(style.rise, y) * (0.3 + 0.8 * layer) * (0.6 + 0.4 * thin)
-    rise *= 1 + 0.45 * front(roots) if style.kind == "combed" else 1.0
+    combed = off_temples(roots) if style.kind == "combed" else np.zeros(count)
+    rise *= 1 + 0.45 * front(roots) * combed
     # At the front hairline hairs stand singly and rise off the forehead.
-    first = front_edge(roots, mask) if style.kind == "combed" else np.zeros(count)
-    rise = np.maximum(rise, 0.62 * first * length)
+    first = front_edge(roots, mask) * combed
+    rise = np.maximum(rise, first * np.minimum(0.62 * length, STANDING))
     width = style.at(style.width, y) * noise.uniform(0.7, 1.25, count) * (0.6 + 0.4 * thin)
     width *= 1 - 0.3 * first
-    colors = strand_colors(scalp.recipe, count, noise, spread=0.15, tone=0.12)
+    # A clump mixes its hairs: where few are grey, none of them is a grey streak.
+    spread = 0.15 * min(1.0, 3 * scalp.recipe.grayness)
+    colors = strand_colors(scalp.recipe, count, noise, spread=spread, tone=0.12)
     edge = 1 - smoothstep(0.75, 1.0, mask)
     if style.kind == "hanging":
         width *= 1 - 0.5 * edge
@@ -214,7 +222,7 @@ def _combed(
         + 0.6 * smooth_noise(roots, 8.0, 42 + scalp.recipe.seed)
         + noise.normal(0, 0.5, count)
     )
-    stiffness = style.stiffness + (0.95 - style.stiffness) * front(roots)
+    stiffness = style.stiffness + (0.95 - style.stiffness) * front(roots) * off_temples(roots)
     step = length / pieces
     along = np.linspace(0, 1, pieces + 1)
     profile = along * (1.55 - 0.55 * along)
@@ -251,8 +259,11 @@ def _hanging(
     )
     # All end at one height, the chin's, a little lower behind.
     hem = HEM - 6 * smoothstep(-20, 40, roots[:, 2]) + noise.normal(0, 4.0, count)
-    _, normal = scalp.height(roots)
-    place = roots - ROOT_DEPTH * normal
+    place = roots.copy()
+    if style.parting is not None:
+        place[:, 0] += _to_parting(roots, style.parting)
+    height, normal = scalp.height(place)
+    place = place - (height[:, None] + ROOT_DEPTH) * normal
     lines, normals = [place], [normal]
     fallen = np.zeros((count, 1))
     # Its way over the head takes the longer, the higher it begins.
@@ -273,6 +284,14 @@ def _hanging(
         lines.append(place)
         normals.append(normal)
     return _grown(np.stack(lines, axis=1), np.stack(normals, axis=1))
+
+
+def _to_parting(roots: FloatArray, parting: float) -> FloatArray:
+    """Return how far in x to move roots (n, 3) on the head's top, so that a parting is a line."""
+    aside = roots[:, 0] - parting
+    off = np.abs(aside)
+    near = smoothstep(2 * PARTING_REACH, PARTING_REACH, off) * smoothstep(58, 72, roots[:, 1])
+    return np.asarray(-np.sign(aside) * np.maximum(off - PARTING_HALF, 0) * near)
 
 
 def _clear(scalp: Scalp, points: FloatArray, lifted: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -394,6 +413,11 @@ def flow(scalp: Scalp, style: Style, points: FloatArray, normals: FloatArray) ->
 def front(points: FloatArray) -> FloatArray:
     """Return how far points (n, 3) lie in the front of the hair, over the forehead, 0..1."""
     return np.asarray(smoothstep(25, 65, points[:, 2]) * smoothstep(50, 72, points[:, 1]))
+
+
+def off_temples(points: FloatArray) -> FloatArray:
+    """Return how far points (n, 3) lie over the forehead rather than at a temple, 0..1."""
+    return np.asarray(smoothstep(40, 16, np.abs(points[:, 0])))
 
 
 def front_row(points: FloatArray) -> FloatArray:

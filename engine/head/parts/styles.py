@@ -96,7 +96,7 @@ STYLES: Mapping[str, Style] = {
     ),
     "bob": Style(
         kind="hanging",
-        segments=(7, 7),
+        segments=(8, 8),
         length=(70.0, 90.0, 110.0, 135.0, 160.0, 185.0, 195.0),
         rise=(7.0, 8.0, 9.0, 10.0, 10.0, 9.5, 7.5),
         width=(6.5, 7.0, 7.5, 7.5, 7.5, 7.5, 7.5),
