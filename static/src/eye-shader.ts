@@ -71,9 +71,9 @@ vec3 lidShade(vec3 inEye) {
   float corner = mix(lidCorners.y, lidCorners.w, s);
   float under = mix(corner, lidMiddles.x, bow) - p.y;
   float over = p.y - mix(corner, lidMiddles.y, bow);
-  float shade = mix(0.07, 1.0, smoothstep(-0.7, 2.9, under)) * mix(0.62, 1.0, smoothstep(0.5, 6.5, under));
-  shade *= mix(0.45, 1.0, smoothstep(-0.6, 1.7, over));
-  shade *= mix(0.48, 1.0, smoothstep(-0.02, 0.22, s) * smoothstep(1.02, 0.74, s));
+  float shade = mix(0.07, 1.0, smoothstep(-0.7, 2.9, under)) * mix(0.5, 1.0, smoothstep(0.3, 7.5, under));
+  shade *= mix(0.42, 1.0, smoothstep(-0.6, 2.4, over));
+  shade *= mix(0.36, 1.0, smoothstep(-0.02, 0.32, s) * smoothstep(1.02, 0.62, s));
   // What light comes back from the lids is red.
   return pow(vec3(shade), vec3(0.82, 1.04, 1.1));
 }
@@ -99,7 +99,7 @@ clearcoatSpecularIndirect *= lidShade(vInEye).g;
 /** Light wanders in the sclera, so that it has no sharp terminator: a flatter ball looks like that. */
 const SOFT_BALL = /* glsl */ `
 #include <normal_fragment_maps>
-normal = normalize(mix(normal, normalize(normalMatrix * (transpose(eyeTurn) * vec3(0.0, 0.0, 1.0))), 0.28));
+normal = normalize(mix(normal, normalize(normalMatrix * (transpose(eyeTurn) * vec3(0.0, 0.0, 1.0))), 0.2));
 `;
 
 /**
@@ -150,7 +150,7 @@ float irisCover;
   irisNormal = normalize(vec3(-at / IRIS_RADIUS * 0.8 - 0.10 * outside * slope, 1.0));
   iris *= 1.0 - 0.75 * smoothstep(5.0, 6.3, r);
   irisCover = eyeMapped() * (1.0 - smoothstep(5.2, 6.25, length(vInEye.xy)));
-  diffuseColor.rgb = 0.66 * iris * lidShade(vInEye);
+  diffuseColor.rgb = 0.78 * iris * lidShade(vInEye);
 }
 `;
 
@@ -171,7 +171,7 @@ const HIGHLIGHT = /* glsl */ `
   float open = lidShade(vInEye).g;
   // The key's box is what a photographer calls the catch light; the lamp's own point would double it.
   float lit = dot(clearcoatSpecularIndirect, vec3(0.33));
-  clearcoatSpecularIndirect *= open * open * mix(0.7, 2.6, smoothstep(0.05, 0.13, lit));
+  clearcoatSpecularIndirect *= open * open * mix(0.7, 3.5, smoothstep(0.05, 0.13, lit));
   clearcoatSpecularDirect *= 0.2 * smoothstep(0.25, 0.6, open);
 }
 `;

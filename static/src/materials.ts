@@ -52,10 +52,10 @@ export function createMaterial(
         : wet(makeCornerFlesh, {
             vertexColors,
             roughness: 0.42,
-            specularIntensity: 0.35,
-            clearcoat: 0.22,
-            clearcoatRoughness: 0.14,
-            envMapIntensity: 0.45,
+            specularIntensity: 0.3,
+            clearcoat: 0.16,
+            clearcoatRoughness: 0.16,
+            envMapIntensity: 0.28,
           });
     case 'teeth':
       return wet(makeOral, {

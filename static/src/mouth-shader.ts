@@ -48,6 +48,15 @@ const BETWEEN_LIDS = /* glsl */ `
 normal = normalize(mix(normal, normalize(vViewPosition), 0.25));
 `;
 
+/** Seen along its bed it would mirror a room that the lids keep from it. */
+const LITTLE_ROOM = /* glsl */ `
+#include <lights_fragment_end>
+reflectedLight.directSpecular *= 0.5;
+reflectedLight.indirectSpecular *= 0.2;
+clearcoatSpecularDirect *= 0.6;
+clearcoatSpecularIndirect *= 0.2;
+`;
+
 /**
  * Change the program of a physical material into the wet flesh in the corners of an eye.
  * @throws Error when three's shader no longer has a line that is replaced here.
@@ -55,6 +64,7 @@ normal = normalize(mix(normal, normalize(vViewPosition), 0.25));
 export function makeCornerFlesh(program: Program): void {
   program.fragmentShader = replaced(program.fragmentShader, [
     ['#include <normal_fragment_maps>', BETWEEN_LIDS],
+    ['#include <lights_fragment_end>', LITTLE_ROOM],
   ]);
   softenShadows(program);
 }

@@ -83,9 +83,8 @@ def _inner_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
     colors = (
         colors + (PLICA - colors) * (0.85 * smoothstep(0.55, 0.85, along + 0 * across))[..., None]
     )
-    colors = (
-        colors + (SCLERA_CORNER - colors) * smoothstep(0.8, 1.12, along + 0 * across)[..., None]
-    )
+    to_ball = smoothstep(0.7, 1.0, along + 0 * across)[..., None]
+    colors = colors + (0.7 * SCLERA_CORNER - colors) * to_ball
     return _sheet(x, y, depth), colors.reshape(-1, 3)
 
 
@@ -112,7 +111,9 @@ def _outer_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
     depth = depth - 0.5 * OUTER_FILLET * smoothstep(0.45, 0.0, along)
     to_bed = smoothstep(0.45, 1.1, along + 0.03 * np.abs(height))[..., None]
     colors = SCLERA_CORNER + (OUTER_BED - SCLERA_CORNER) * to_bed
-    shade = 1 - 0.45 * smoothstep(0.3, 1.05, along + 0 * across)[..., None]
+    # Lids shade it from both sides, and meet where it ends.
+    shade = 0.72 - 0.42 * smoothstep(0.2, 1.0, along + 0 * across)
+    shade = (shade * (1 - 0.4 * smoothstep(0.0, 0.8, across + 0 * along)))[..., None]
     return _sheet(x, y, depth), (shade * colors).reshape(-1, 3)
 
 

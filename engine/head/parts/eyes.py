@@ -35,7 +35,7 @@ CORNEA_REACH = 6.5
 """Radius at which the cornea's shell ends on the sclera, mm."""
 CORNEA_LIFT = 0.03
 """Of the shell over the ball, so that neither flickers through the other, mm."""
-SEEN = ("eye_color", "age", "seed")
+SEEN = ("eye_color", "age", "skin", "seed")
 """What of a recipe an eye's colours tell of."""
 BACK_ANGLE = 2.2
 """Angle from the eye's axis beyond which the ball is left open, radians."""

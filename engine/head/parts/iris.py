@@ -68,9 +68,11 @@ FLECK = (84.0, 55.0, 32.0)
 
 # Linear RGB.
 PUPIL = np.array([0.0035, 0.003, 0.003])
-SCLERA = np.array([0.47, 0.41, 0.36])
-SCLERA_AGED = np.array([0.46, 0.385, 0.305])
+SCLERA = np.array([0.43, 0.37, 0.33])
+SCLERA_AGED = np.array([0.41, 0.34, 0.27])
 SCLERA_CORNER = np.array([0.39, 0.245, 0.20])
+SCLERA_MELANIN = np.array([0.17, 0.21, 0.27])
+"""What the conjunctiva of the darkest skin takes from the sclera's light."""
 SCLERA_NEAR_LIMBUS = np.array([0.40, 0.38, 0.36])
 VESSEL = np.array([0.42, 0.115, 0.09])
 VESSELS = 46
@@ -106,7 +108,7 @@ def eye_colors(recipe: Recipe) -> FloatArray:
     off_axis = EYE_RADIUS * np.sin(angle)
     noise = np.random.default_rng([recipe.seed, 131])
     iris = _iris(off_axis, around, IRISES[recipe.eye_color], noise)
-    sclera = _sclera(angle, around, recipe.age, noise)
+    sclera = _sclera(angle, around, recipe, noise)
     # The sclera laps over the cornea unevenly, more above and below than to the sides.
     lap = 0.12 * np.abs(np.sin(around)) + 0.06 * _ringed(noise, around, 0 * around, 17, 1)
     edge = IRIS_RADIUS + 0.12 - lap
@@ -192,18 +194,18 @@ def _spots(t: FloatArray, around: FloatArray, count: int, noise: np.random.Gener
 
 
 def _sclera(
-    angle: FloatArray, around: FloatArray, age: float, noise: np.random.Generator
+    angle: FloatArray, around: FloatArray, recipe: Recipe, noise: np.random.Generator
 ) -> FloatArray:
     """Return the sclera's colour at angles from and round the eye's axis."""
     limbus = float(np.arcsin(IRIS_RADIUS / EYE_RADIUS))
-    years = float(smoothstep(35, 85, np.array(age)))
-    base = SCLERA + (SCLERA_AGED - SCLERA) * years
+    years = float(smoothstep(35, 85, np.array(recipe.age)))
+    base = (SCLERA + (SCLERA_AGED - SCLERA) * years) * (1 - recipe.skin * SCLERA_MELANIN)
     color = np.broadcast_to(base, (*angle.shape, 3))
     near = 1 - smoothstep(limbus, limbus + 0.16, angle)
-    color = color + (SCLERA_NEAR_LIMBUS - color) * (0.6 * near)[..., None]
+    color = color + (np.minimum(SCLERA_NEAR_LIMBUS, base) - color) * (0.6 * near)[..., None]
     cloud = _ringed(noise, around, angle / np.pi * 2, 9, 5) - 0.5
     color = color * (1 + cloud[..., None] * np.array([0.02, 0.05, 0.09]))
-    to_corner = smoothstep(0.58, 1.06, angle) * (0.55 + 0.45 * np.abs(np.cos(around)))
+    to_corner = smoothstep(0.5, 0.98, angle) * (0.55 + 0.45 * np.abs(np.cos(around)))
     color = color + (SCLERA_CORNER - color) * to_corner[..., None]
     vessels = _vessels(noise) * smoothstep(limbus + 0.02, limbus + 0.22, angle)
     return np.asarray(color + (VESSEL - color) * (vessels * (0.75 + 0.25 * years))[..., None])

@@ -44,8 +44,8 @@ class Row:
     clump: int
 
 
-UPPER = Row(count=100, length=8.6, width=0.135, forward=0.80, dip=-0.16, curl=0.74, clump=4)
-LOWER = Row(count=52, length=5.0, width=0.095, forward=0.62, dip=0.0, curl=-0.60, clump=3)
+UPPER = Row(count=128, length=8.4, width=0.165, forward=0.80, dip=-0.16, curl=0.74, clump=4)
+LOWER = Row(count=58, length=4.8, width=0.1, forward=0.62, dip=0.0, curl=-0.60, clump=3)
 
 LENGTH_ALONG = ((0.0, 1.0, 2.5, 5.0, 7.0, 8.0), (0.40, 0.55, 0.82, 1.0, 1.0, 0.78))
 """Relative length by spoke from the inner corner (0) to the outer (8)."""
