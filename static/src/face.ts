@@ -93,9 +93,9 @@ const MOUTH_TOP = -0.04;
 const LIPS = 0.094;
 const THROAT = 0.045;
 const DARKEST = { wet: 0.4, teeth: 0.6 };
-/** A face that reaches lower than this [m] has a neck, which fades over so many mm. */
+/** A face that reaches lower than this [m] has a neck, which leaves the light over so many mm. */
 const NECK_BELOW = -0.14;
-const NECK_FADE = 58;
+const NECK_FADE = 66;
 /** What is blended comes after what is opaque: skin, which fades at the neck, then corneas, then hair over both. */
 const DRAWN_AFTER: Record<string, number> = { skin: 1, cornea: 2, hair: 3 };
 const EYE_NODES = ['eye.L', 'eye.R'] as const;

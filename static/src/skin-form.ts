@@ -41,7 +41,7 @@ export function skinForm(
   for (let vertex = 0; vertex < count; vertex++) {
     form[vertex * 2]! /= Math.max(1, degree[vertex]!);
     const region = regionOf === null ? '' : (regionNames[regionOf[vertex]!] ?? '');
-    form[vertex * 2 + 1] = (THIN[region] ?? 0) * edgeShare(Math.abs(form[vertex * 2]!));
+    form[vertex * 2 + 1] = (THIN[region] ?? 0) * edgeShare(form[vertex * 2]!);
   }
   for (let round = 0; round < ROUNDS; round++) average(form, edges, degree);
   return form;
@@ -61,7 +61,7 @@ export function mouthWalls(
   return walls;
 }
 
-/** Thin skin bends: an ear's rim and folds do, the skin around the ear does not. */
+/** Thin skin bulges: an ear's rim and folds do, the skin around the ear and its furrow before it do not. */
 function edgeShare(bend: number): number {
   return Math.min(1, Math.max(0, (bend - FLAT) / (SHARP - FLAT)));
 }

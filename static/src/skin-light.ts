@@ -17,7 +17,7 @@ float skinOpen;
 float skinBare;
 
 /** Sine of half the angle that a soft box fills: its light fades over so much, and does not end at a line. */
-const float BOX = 0.2;
+const float BOX = 0.28;
 const vec3 BLUR = vec3(0.88, 0.62, 0.42);
 const vec3 REACH = vec3(0.055, 0.022, 0.014);
 const vec3 REACH_PER_BEND = vec3(2.6, 1.0, 0.55);
@@ -35,7 +35,7 @@ vec3 scatteredCosine(vec3 cosine) {
 
 vec3 scatteredShadow(float lit, float cosine) {
   // Beyond the terminator the map only shows the skin shading itself, which the scattered cosine does better.
-  float open = mix(lit, 1.0, 0.6 * smoothstep(0.1, -0.12, cosine));
+  float open = mix(lit, 1.0, 0.65 * smoothstep(0.26, -0.14, cosine));
   return pow(vec3(max(open, 0.0)), mix(vec3(1.0), vec3(0.72, 0.96, 1.04), skinBare));
 }
 
@@ -51,7 +51,7 @@ void RE_Direct_Skin(
   float crease = saturate(dotNL + 2.0 * skinOpen * skinOpen);
   // A light behind the head reaches its edges alone; what faces the camera it would have to pass the head for.
   float facing = saturate(dot(skinSmooth, geometryViewDir));
-  crease *= mix(1.0, smoothstep(0.4, 0.08, facing), smoothstep(0.0, -0.35, dot(light, geometryViewDir)));
+  crease *= mix(1.0, smoothstep(0.5, -0.04, facing), smoothstep(0.0, -0.35, dot(light, geometryViewDir)));
   vec3 irradiance = scatteredCosine(cosines) * directLight.color * crease;
 
   vec3 halfway = normalize(light + geometryViewDir);

@@ -7,7 +7,7 @@ import { softerShadows } from './soft-shadows';
 
 /** Uniforms of the skin. Those of maps are read only where the geometry has texture coordinates. */
 export interface SkinUniforms {
-  /** Heights between which the neck dissolves into the background [mm]. */
+  /** Heights between which the neck leaves the light, for the background [mm]. */
   neckFade: { value: unknown };
   /** 0 vertex colours, 1 maps. */
   mapsShown: { value: unknown };
@@ -99,9 +99,11 @@ skinOpen = 1.0 - 0.75 * mucosa;
 skinBare = 1.0 - hairCover;
 skinBend = vForm.x;
 skinThin = vForm.y * (1.0 - hairCover);
-float aboveNeck = smoothstep(neckFade.x, neckFade.y, vRest.y);
-diffuseColor.a *= aboveNeck;
-diffuseColor.rgb *= 0.15 + 0.85 * aboveNeck;
+// The lamps are flagged off the neck: it goes into the dark first, and only there into the background.
+float intoLight = saturate((vRest.y - neckFade.x) / (neckFade.y - neckFade.x));
+diffuseColor.a *= smoothstep(0.0, 0.6, intoLight);
+float lampLight = smoothstep(0.1, 1.0, intoLight);
+diffuseColor.rgb = mix(vec3(0.022, 0.023, 0.026), diffuseColor.rgb, lampLight * lampLight);
 `;
 
 /** Pores without maps, by noise; with maps, the maps' relief and a tile of what is finer than they are. */
@@ -144,14 +146,14 @@ if (mapsShown < 1.0) {
 
 /** Hair is no sheet of skin, and the mouth mirrors no studio: little highlight of their own. */
 const GLOSS = /* glsl */ `
-float gloss = mix(0.6 + 0.8 * oil, 1.0, mapsShown) * (1.0 - 0.75 * hairCover) * (1.0 - 0.8 * mucosa);
+float gloss = lampLight * mix(0.6 + 0.8 * oil, 1.0, mapsShown) * (1.0 - 0.75 * hairCover) * (1.0 - 0.8 * mucosa);
 material.specularColor *= gloss;
 material.specularColorBlended *= gloss;
 material.specularF90 *= gloss;
 `;
 
 /** How often the tile of pores lies side by side on the map, and how steep its slopes are. */
-const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.8\n';
+const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.6\n';
 
 /** An open mouth draws its walls across the teeth, which no tissue holds off: what lies in it is drawn before them. */
 const BEHIND_TEETH = /* glsl */ `

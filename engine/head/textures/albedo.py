@@ -204,7 +204,7 @@ def _colored(
             brown += 0.25 * pored * _step(0.0, 0.9, pore)
 
         # Lips: a soft, slightly ragged border, fine upright lines, darker outside corners.
-        lip = _step(-1.25, 1.35, lip_depth + 0.35 * n1 + 0.22 * nf)
+        lip = _step(-1.9, 2.3, lip_depth + 0.5 * n1 + 0.25 * nf + 0.4 * n3)
         if lip > 0.0:
             # Lines run from the mouth's opening outwards: noise stretched along y and z.
             bend = 0.5 * n3
@@ -212,15 +212,16 @@ def _colored(
             fine = value_noise((x + bend) / 0.4, y / 3.2, z / 3.2, seed + 32)
             lines = 0.13 * line + 0.10 * fine
             rim = _step(2.6, 0.2, lip_depth)
-            lip_red = 0.56 + 0.10 * (1 - upper) + lines + 0.10 * n3 - 0.14 * rim + 0.06 * (1 - sex)
-            lip_brown = 0.22 + 0.09 * upper + 0.5 * lines + 0.06 * n6 + 0.05 * age
+            lip_red = 0.46 + 0.05 * (1 - upper) + lines + 0.10 * n3 - 0.12 * rim + 0.07 * (1 - sex)
+            lip_brown = 0.18 + 0.07 * upper + 0.5 * lines + 0.06 * n6 + 0.05 * age
             # On dark skin the upper lip and the rim are browner, the lower lip rosy within.
             lip_red *= 1 - dark * (0.22 + 0.2 * upper)
             lip_brown += dark * (0.16 * upper + 0.20 * rim - 0.16 * (1 - upper) * (1 - rim))
             lip_red *= 1 - 0.18 * age
             red += lip * (lip_red - 0.8 * red)
             brown += lip * (lip_brown - 0.8 * brown)
-            gold -= lip * (0.03 + 0.5 * gold)
+            # Mucosa has no thick horny layer, whose yellow would make its pink salmon.
+            gold -= lip * (0.26 - 0.10 * dark + 0.5 * gold)
 
         red = red * (visible + (1 - visible) * 0.6 * lip)
         # Stubble's shadow: hair under the skin, seen through it bluish, then each hair's tip.

@@ -147,11 +147,11 @@ def zones_of(surface: Surface, recipe: Recipe) -> Zones:
     neck = smoothstep(-112, -135, y)
     beard = _beard(surface, x, y, z)
     return Zones(
-        blood=0.23 * cheek
-        + 0.32 * tip
-        + 0.28 * ala
+        blood=0.19 * cheek
+        + 0.22 * tip
+        + 0.17 * ala
         + 0.16 * chin
-        + 0.17 * ears
+        + 0.13 * ears
         + 0.16 * upper_lid
         + 0.07 * spot(22, -40, 9, 12)
         + 0.05 * spot(0, 15, 14, 10)
