@@ -4,6 +4,7 @@ It implements "Animation of Facial Expressions by Physical Modeling" (Zhang, Pra
 Eurographics 2001). A face is a rig; commands are keyframes; a simulator plays them.
 """
 
+from .analysis import Analysis, UnitBasis, analyze, analyze_facs, unit_basis
 from .clip import Clip, clip_of, record, settled, settled_units
 from .conditions import TISSUE_AGES, plain_changes
 from .emotion import Emotion, blend
@@ -29,7 +30,7 @@ from .measure import measure_units
 from .mixing import hold_units, unit_key
 from .quality import judge
 from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig, rig_from_recipe
-from .simulator import FaceState, Simulator
+from .simulator import FaceState, Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
 from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
@@ -45,6 +46,7 @@ __all__ = [
     "TICKS_PER_SECOND",
     "TISSUE_AGES",
     "ActionUnit",
+    "Analysis",
     "Cancelled",
     "Clip",
     "Diverged",
@@ -64,9 +66,13 @@ __all__ = [
     "Recipe",
     "Rig",
     "Simulator",
+    "Snapshot",
     "Term",
     "Timeline",
+    "UnitBasis",
     "UnknownName",
+    "analyze",
+    "analyze_facs",
     "blend",
     "builtin_rig",
     "clip_of",
@@ -93,5 +99,6 @@ __all__ = [
     "targets_to_glb",
     "texture_names",
     "textures_of",
+    "unit_basis",
     "unit_key",
 ]

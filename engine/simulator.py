@@ -46,6 +46,27 @@ class FaceState:
     work: Workspace | None = field(default=None, repr=False)
 
 
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """A face at one moment with all of its tissue, for those who look into it.
+
+    Attributes:
+        assembly: The rig and model that it is simulated with.
+        tick: When.
+        x: Node positions, mm, shape (3, nodes).
+        signals: Activations, jaw, gaze and head as the face has them, shape (channels,).
+        skull: The skull side as jaw and lids stand; its load is the dead load alone.
+        frame: The face as viewers see it.
+    """
+
+    assembly: Assembly
+    tick: int
+    x: FloatArray
+    signals: FloatArray
+    skull: Skull
+    frame: Frame
+
+
 class Simulator:
     """Steps any number of faces of one rig and model; each as if it were alone.
 
@@ -158,6 +179,24 @@ class Simulator:
             UnknownName: If there is no such face.
         """
         return self._frame(self._face(face))
+
+    def snapshot(self, face: str) -> Snapshot:
+        """Return a face as it stands, its tissue copied.
+
+        Raises:
+            UnknownName: If there is no such face.
+        """
+        state = self._face(face)
+        self._pose(state)
+        assert state.skull is not None
+        return Snapshot(
+            assembly=self.assembly,
+            tick=state.tick,
+            x=state.x.copy(),
+            signals=state.signals.copy(),
+            skull=state.skull,
+            frame=self._frame(state),
+        )
 
     def report(self, face: str) -> dict[str, object]:
         """Return what each layer of a face holds, and the merged command, as plain data.

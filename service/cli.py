@@ -1,4 +1,4 @@
-"""The command line: serve, clip, sheet, levels, bench, measure, warm.
+"""The command line: serve, clip, sheet, levels, bench, measure, analyze, warm.
 
 Every command ends with 0, or with 2 and one clear sentence.
 """
@@ -253,6 +253,29 @@ def measure(
     except EngineError as error:
         _refuse(f"The rig cannot be measured: {error}.")
     typer.echo(json.dumps(figures, indent=2, allow_nan=False) if as_json else markdown(figures))
+
+
+@app.command()
+def analyze(
+    facs: Annotated[str, typer.Option(help="Expression to look into, such as 12C+15C.")],
+    rig: Annotated[str, typer.Option(help="Rig to put it on, or a person.")] = "standard",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Look into an expression: forces, strain, energy, and the action units that it shows."""
+    from engine import EngineError, analyze_facs, builtin_rig
+
+    from .analyzing import analysis_markdown
+
+    try:
+        with _console.status("settling the face") as status:
+            data = analyze_facs(
+                builtin_rig(rig),
+                facs,
+                progress=lambda share: status.update(f"settling every action unit: {share:.0%}"),
+            ).to_json()
+    except EngineError as error:
+        _refuse(f"The expression cannot be analysed: {error}.")
+    typer.echo(json.dumps(data, indent=2, allow_nan=False) if as_json else analysis_markdown(data))
 
 
 @app.command()

@@ -14,6 +14,7 @@ from engine import Model, Timeline
 from .clips import Clips
 from .embedded import EmbeddedRunner
 from .guard import RateLimit
+from .insight import Insight
 from .metrics import Metrics
 from .rigs import Rigs
 from .sessions import Sessions
@@ -41,6 +42,7 @@ class Components:
     runner: EmbeddedRunner
     sessions: Sessions
     clips: Clips
+    insight: Insight
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     stage: str = "starting"
     _warming: asyncio.Task[None] | None = None
@@ -78,7 +80,8 @@ class Components:
             max_keyframes=settings.max_keyframes,
             on_end=lambda status: metrics.clips.labels(status).inc(),
         )
-        return cls(settings, metrics, rate, store, rigs, runner, sessions, clips)
+        insight = Insight(queue_limit=settings.max_queued_analyses)
+        return cls(settings, metrics, rate, store, rigs, runner, sessions, clips, insight)
 
     def start(self) -> None:
         """Start the threads and tasks, and warm up beside them."""
@@ -94,6 +97,7 @@ class Components:
         await self.clips.stop()
         await self.sessions.stop()
         await asyncio.to_thread(self.runner.stop)
+        await asyncio.to_thread(self.insight.close)
         await asyncio.to_thread(self.rigs.close)
         self.store.close()
 

@@ -19,7 +19,7 @@ from engine import Clip, Frame, Keyframe, Model, Rig, Simulator, Timeline, recor
 
 from .errors import NotFound
 from .mailbox import Mailbox
-from .runner import Cancelled, Move, Progress, Tick, View
+from .runner import Cancelled, Look, Move, Progress, Tick, View
 from .writers import with_writers
 
 _LOG = structlog.get_logger("runner")
@@ -140,6 +140,10 @@ class EmbeddedRunner:
     async def view(self, session: str) -> View:
         """Return the face as it stands."""
         return await self._mailbox.ask(lambda: self._view(session))
+
+    async def look(self, session: str) -> Look:
+        """Return the face with all of its tissue, copied between two ticks."""
+        return await self._mailbox.ask(lambda: self._look(session))
 
     async def ticks(self) -> AsyncIterator[Tick]:
         """Yield what moved, in batches; a slow reader gets fewer, newer frames."""
@@ -348,6 +352,10 @@ class EmbeddedRunner:
     def _view(self, session: str) -> View:
         simulator = self._group(session).simulator
         return View(simulator.frame(session), with_writers(simulator.report(session)))
+
+    def _look(self, session: str) -> Look:
+        simulator = self._group(session).simulator
+        return Look(simulator.snapshot(session), simulator.report(session))
 
 
 def _nothing() -> None:

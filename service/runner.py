@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
-from engine import Clip, Frame, Keyframe, Model, Rig, Timeline
+from engine import Clip, Frame, Keyframe, Model, Rig, Snapshot, Timeline
 
 Progress = Callable[[float], None]
 Cancelled = Callable[[], bool]
@@ -44,6 +44,14 @@ class View:
     report: Mapping[str, object]
 
 
+@dataclass(frozen=True, eq=False)
+class Look:
+    """A face with all of its tissue, and what its layers hold."""
+
+    snapshot: Snapshot
+    report: Mapping[str, Any]
+
+
 class Runner(Protocol):
     """The verbs by which the service drives faces; `view` looks without changing anything."""
 
@@ -68,6 +76,14 @@ class Runner(Protocol):
 
     async def view(self, session: str) -> View:
         """Return the face as it stands.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped.
+        """
+
+    async def look(self, session: str) -> Look:
+        """Return the face with all of its tissue, copied between two ticks.
 
         Raises:
             NotFound: If there is no such face.

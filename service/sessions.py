@@ -18,7 +18,7 @@ from .commands import held_from_json, held_to_json, hold
 from .errors import Busy, NotFound, refused_by_engine
 from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_frame
 from .rigs import Rigs
-from .runner import Move, Runner, Tick, View
+from .runner import Look, Move, Runner, Tick, View
 from .store import SessionRow, Store
 from .viewers import Viewer
 
@@ -255,6 +255,10 @@ class Sessions:
     async def view(self, session: Session) -> View:
         """Return the face as it stands."""
         return await self._runner.view(session.id)
+
+    async def look(self, session: Session) -> Look:
+        """Return the face with all of its tissue."""
+        return await self._runner.look(session.id)
 
     def watch(self, session: Session) -> Viewer:
         """Add a viewer.

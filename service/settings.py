@@ -81,6 +81,9 @@ class Settings(BaseSettings):
     max_keyframes: int = Field(
         default=10_000, ge=1, description="Most keyframes accepted in one clip."
     )
+    max_queued_analyses: int = Field(
+        default=16, ge=1, description="Most analyses and inverses waiting or being computed."
+    )
     session_idle_seconds: float = Field(
         default=21_600.0,
         gt=0,

@@ -1,0 +1,27 @@
+"""Insight: what a live face does inside, and what it shows beside what it was asked for."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from ..components import Parts
+from ..insight_bodies import AnalysisBody
+
+router = APIRouter(prefix="/api", tags=["insight"])
+Measured = Annotated[
+    bool,
+    Query(description="Whether action units are measured: slow the first time on a rig."),
+]
+
+
+@router.get("/sessions/{session_id}/analysis", response_model_exclude_none=True)
+async def session_analysis(
+    session_id: str, parts: Parts, measured: Measured = True
+) -> AnalysisBody:
+    """Return force and contraction by muscle, strain, energy, and measured action units."""
+    session = await parts.sessions.get(session_id)
+    look = await parts.sessions.look(session)
+    analysis = await parts.insight.analyze(look, measured=measured)
+    return AnalysisBody.model_validate(analysis.to_json())

@@ -1,0 +1,102 @@
+"""What insight answers: muscles, strain, energy, measured action units."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, Field
+
+
+class MuscleLine(BaseModel):
+    """One muscle of a face."""
+
+    name: str
+    activation: float = Field(description="As the tissue feels it, behind its command by a lag.")
+    force: float = Field(description="Sum of its nodal forces' sizes, paper stiffness unit x mm.")
+    force_mN: float = Field(description="The same in mN: one unit is 17.3 g/s².")
+    length_mm: float | None = Field(
+        default=None, description="From attachment to insertion, or around a sphincter's ring."
+    )
+    contraction_mm: float | None = Field(
+        default=None, description="By how much shorter than at rest; negative if stretched."
+    )
+    contraction_share: float | None = None
+    turn_degrees: list[float] | None = Field(
+        default=None, description="Turn of the upper and lower lid, for muscles that turn lids."
+    )
+
+
+class SpreadBody(BaseModel):
+    """Shares of the length at rest."""
+
+    mean: float
+    p95: float
+    max: float
+
+
+class StrainBody(BaseModel):
+    """Strain of the springs along one layer."""
+
+    tension: SpreadBody
+    compression: SpreadBody
+
+
+class EnergyBody(BaseModel):
+    """Elastic energy above the face at rest, paper stiffness unit x mm²."""
+
+    total: float
+    total_uJ: float
+    terms: dict[str, float]
+
+
+class RegionBody(BaseModel):
+    """One region of the skin, all layers under it included."""
+
+    energy: float
+    energy_uJ: float
+    layers: dict[str, StrainBody]
+
+
+class MeasuredUnitBody(BaseModel):
+    """One action unit, asked for or seen."""
+
+    unit: str
+    side: str = Field(description="Empty for both, L or R.")
+    requested: float
+    measured: float | None = Field(description="Null for a unit that moves no tissue.")
+    shown_as: str | None = Field(default=None, description="A unit that looks the same.")
+
+
+class FightBody(BaseModel):
+    """Two units that hold each other back, the one that lost more first."""
+
+    units: list[str]
+    opposed: float
+    requested: list[float]
+    measured: list[float]
+
+
+class AntagonistsBody(BaseModel):
+    """Two active muscles that pull the same tissue opposite ways."""
+
+    muscles: list[str]
+    opposed: float
+
+
+class MeasuredBody(BaseModel):
+    """What the face shows."""
+
+    action_units: list[MeasuredUnitBody]
+    fights: list[FightBody]
+    antagonists: list[AntagonistsBody]
+    residual: float = Field(description="Share of the motion that no unit explains.")
+
+
+class AnalysisBody(BaseModel):
+    """A face looked into."""
+
+    rig: str
+    tick: int
+    muscles: list[MuscleLine]
+    layers: dict[str, StrainBody]
+    energy: EnergyBody
+    regions: dict[str, RegionBody]
+    measured: MeasuredBody | None = None
