@@ -49,7 +49,7 @@ def measure(rig_name: str = "standard", *, effort: float = 1.0) -> dict[str, Any
     }
     return {
         "risorius": version(),
-        "machine": _machine(),
+        "machine": machine(),
         "rig": {"id": rig.id, "name": rig.name, "vertices": len(rig.head.points)},
         "substeps_per_tick": substeps,
         "substep_milliseconds": round(1000 * alone / substeps, 4),
@@ -139,7 +139,8 @@ def _best(work: Callable[[], object], repeats: int = 50) -> float:
     return min(times)
 
 
-def _machine() -> dict[str, Any]:
+def machine() -> dict[str, Any]:
+    """Return what the figures of a measurement depend on: processor, system, versions."""
     return {
         "processor": _processor(),
         "cores": os.cpu_count(),

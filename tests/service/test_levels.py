@@ -19,6 +19,8 @@ def test_levels_and_textures_are_rows() -> None:
     }
     files = {"albedo.jpg": 900_000, "orm.jpg": 100_000}
     textures = {"bytes": files, "baked_s": 9.0, "cached_s": 0.02}
-    table = markdown({"levels": [level], "textures": textures})
-    assert "| low | 1,200 | 2,400 | 2,500 | 2.5 | 1.0 | 0.50 | 0.10 |" in table
+    machine = {"processor": "Abacus 7", "cores": 2, "python": "3.11.7"}
+    table = markdown({"machine": machine, "levels": [level], "textures": textures})
+    assert table.startswith("Measured on Abacus 7 (2 cores), Python 3.11.7;")
+    assert "| low | 1,200 | 2,400 | 1,210 | 2,500 | 2.5 | 1.0 | 0.50 | 0.10 |" in table
     assert "| all, baked in 9.0 s, cached 0.02 s | 1000 |" in table
