@@ -8,7 +8,7 @@ import zipfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,8 @@ from .kept import keep, read_kept
 MOST_BYTES = 1_000_000_000
 """Size that the folder's arrays may reach: some hundred people, at all levels."""
 
-Arrays = dict[str, npt.NDArray[np.generic]]
+Arrays = dict[str, npt.NDArray[Any]]
+"""Arrays of any type by name: who reads them knows which."""
 
 
 def cache_folder() -> Path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -338,13 +338,13 @@ def mirrored(muscle: Muscle) -> Muscle:
     stem, _, side = muscle.name.rpartition(".")
     name = f"{stem}.{'R' if side == 'L' else 'L'}"
     points = ("attachment", "insertion", "center", "plane", "normal")
-    changes: dict[str, object] = {
+    changes: dict[str, Any] = {
         field.name: _flip(getattr(muscle, field.name))
         for field in fields(muscle)
         if field.name in points
     }
     left, right = muscle.gain
-    return replace(muscle, name=name, gain=(right, left), **changes)  # type: ignore[arg-type]
+    return replace(muscle, name=name, gain=(right, left), **changes)
 
 
 def gain_at(muscle: Muscle, x: FloatArray) -> FloatArray:
@@ -359,11 +359,11 @@ def gain_at(muscle: Muscle, x: FloatArray) -> FloatArray:
     return np.asarray(right + (left - right) * share)
 
 
-def _flip(value: object) -> object:
+def _flip(value: Any) -> Any:
     if isinstance(value, tuple) and value and isinstance(value[0], tuple):
         return tuple(_flip(point) for point in value)
-    x, y, z = value  # type: ignore[misc]
-    return (0.0 if x == 0 else -x, y, z)  # type: ignore[has-type]
+    x, y, z = value
+    return (0.0 if x == 0 else -x, y, z)
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

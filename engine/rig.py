@@ -562,12 +562,12 @@ def _edited_muscle(muscle: Muscle, changes: Mapping[str, object]) -> Muscle:
     if not changes:
         return muscle
     allowed = {f.name for f in fields(muscle)} & set(EDITABLE)
-    edits: dict[str, object] = {}
+    edits: dict[str, Any] = {}
     for name, value in changes.items():
         if name not in allowed:
             raise UnknownName("muscle field", name, allowed)
         edits[name] = _like(f"{muscle.name}.{name}", getattr(muscle, name), value)
-    return replace(muscle, **edits)  # type: ignore[arg-type]
+    return replace(muscle, **edits)
 
 
 def _like(name: str, old: object, value: object) -> object:

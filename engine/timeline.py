@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
+from typing import Any
 
 from .errors import InvalidNotation, InvalidTrack
 from .facs import LETTERS, parse_facs
@@ -145,11 +146,11 @@ def _keyframe(index: int, entry: object) -> Keyframe:
         raise InvalidTrack(
             f"keyframe {index}: field {unknown[0]!r} is not known; known are {sorted(_KNOWN)}"
         )
-    values: dict[str, object] = {}
+    values: dict[str, Any] = {}
     for name in _MAPPINGS:
         values[name] = _numbers(index, name, entry.get(name, _NOTHING))
     if "facs" in entry:
-        values["action_units"] = {**_facs(index, entry["facs"]), **values["action_units"]}  # type: ignore[dict-item]
+        values["action_units"] = {**_facs(index, entry["facs"]), **values["action_units"]}
     for name in _NUMBERS:
         if name in entry:
             values[name] = _number(index, name, entry[name])
@@ -162,7 +163,7 @@ def _keyframe(index: int, entry: object) -> Keyframe:
     values["replace"] = bool(entry.get("replace", False))
     if "emotion" in entry:
         values["emotion"] = _emotion(index, entry["emotion"])
-    return Keyframe(**values)  # type: ignore[arg-type]
+    return Keyframe(**values)
 
 
 def _facs(index: int, value: object) -> dict[str, float]:

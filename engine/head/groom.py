@@ -56,7 +56,7 @@ def _from_arrays(arrays: Arrays) -> list[Part]:
             name,
             material="hair",
             follows="skin" if name in RIDING else "skull",
-            **{key: arrays.get(f"{name}.{key}") for key in _ARRAYS},  # type: ignore[arg-type]
+            **{key: arrays[f"{name}.{key}"] for key in _ARRAYS if f"{name}.{key}" in arrays},
         )
         for name in GROOMED
         if f"{name}.vertices" in arrays

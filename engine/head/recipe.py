@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -252,7 +253,7 @@ class Recipe:
             InvalidValue: For a number outside its range.
         """
         known = [f.name for f in fields(cls)]
-        given: dict[str, object] = {}
+        given: dict[str, Any] = {}
         values, seed = _without_sample(values)
         for name, value in values.items():
             if name not in known:
@@ -261,14 +262,14 @@ class Recipe:
         if seed is not None:
             given = {**_drawn(seed, given), **given}
         before = base or STANDARD
-        recipe = replace(before, **given)  # type: ignore[arg-type]
+        recipe = replace(before, **given)
         # What was usual for the sex and the age before is what is usual now.
-        usual = {
+        usual: dict[str, Any] = {
             name: find(recipe)
             for name, find in USUAL.items()
             if name not in given and getattr(before, name) == find(before)
         }
-        return replace(recipe, **usual)  # type: ignore[arg-type]
+        return replace(recipe, **usual)
 
     def to_json(self) -> dict[str, object]:
         """Return every attribute as plain data."""

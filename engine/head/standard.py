@@ -143,7 +143,7 @@ def _unwrapped(sculpture: Sculpture) -> Unwrap:
         source_key("uvs"),
         lambda: vars(unwrap(sculpture.cage, sculpture.limit, sculpture.points)),
     )
-    return Unwrap(**arrays)  # type: ignore[arg-type]
+    return Unwrap(**arrays)
 
 
 def _paper() -> Head:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
-from ..cache import content_key
+from ..cache import Arrays, content_key
 from ..sources import HEAD_HASH
 from .head import DrawnSurface, Eye, Head, LidContact, Part
-
-Arrays = dict[str, npt.NDArray[np.generic]]
 
 HEAD_ARRAYS = (
     "points", "polygons", "triangles", "mirror", "fixed", "jaw_weight", "depth", "anchor_weight",
@@ -63,18 +61,17 @@ def head_from_arrays(arrays: Arrays) -> Head:
     """Return the head that `head_to_arrays` took apart."""
     rest = json.loads(arrays["rest"].tobytes())
     drawn = DrawnSurface(
-        **{name: arrays[f"drawn.{name}"] for name in DRAWN_ARRAYS},  # type: ignore[arg-type]
-        **{name: arrays.get(f"drawn.{name}") for name in TEXTURE_ARRAYS},  # type: ignore[arg-type]
+        **_stored("drawn.", (*DRAWN_ARRAYS, *TEXTURE_ARRAYS), arrays),
         region_names=tuple(rest["region_names"]),
         map=_matrix_from_arrays("drawn.map", arrays),
-        lids=LidContact(**{name: arrays[f"lids.{name}"] for name in LID_ARRAYS}),  # type: ignore[arg-type]
+        lids=LidContact(**_stored("lids.", LID_ARRAYS, arrays)),
     )
     parts = tuple(
         Part(
             name,
             material=material,
             follows=follows,
-            **{key: arrays.get(f"part{index}.{key}") for key in PART_ARRAYS},  # type: ignore[arg-type]
+            **_stored(f"part{index}.", PART_ARRAYS, arrays),
         )
         for index, (name, material, follows) in enumerate(rest["parts"])
     )
@@ -88,8 +85,13 @@ def head_from_arrays(arrays: Arrays) -> Head:
         parts=parts,
         eyes=tuple(Eye(np.array(center), radius) for center, radius in rest["eyes"]),
         landmarks=rest["landmarks"],
-        **{name: arrays[name] for name in HEAD_ARRAYS},  # type: ignore[arg-type]
+        **_stored("", HEAD_ARRAYS, arrays),
     )
+
+
+def _stored(prefix: str, names: Sequence[str], arrays: Arrays) -> Arrays:
+    """Return the arrays of those names that were stored: what has a default may be missing."""
+    return {name: arrays[prefix + name] for name in names if prefix + name in arrays}
 
 
 def _matrix_to_arrays(name: str, matrix: sp.csr_array) -> Arrays:

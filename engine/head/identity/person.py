@@ -72,31 +72,30 @@ def moved_arrays(person: Head) -> Arrays:
 def with_moved(reference: Head, arrays: Arrays) -> Head:
     """Return the person whose `moved_arrays` were kept."""
     drawn = reference.drawn
-    numbers: dict[str, FloatArray] = arrays  # type: ignore[assignment]
     return replace(
         reference,
-        points=numbers["points"],
-        depth=numbers["depth"],
-        teeth=numbers["teeth"],
+        points=arrays["points"],
+        depth=arrays["depth"],
+        teeth=arrays["teeth"],
         drawn=replace(
             drawn,
-            vertices=numbers["vertices"],
-            normals=numbers["normals"],
-            colors=numbers["colors"],
-            hair=numbers["hair"],
-            lids=replace(drawn.lids, clearance=numbers["clearance"]),
+            vertices=arrays["vertices"],
+            normals=arrays["normals"],
+            colors=arrays["colors"],
+            hair=arrays["hair"],
+            lids=replace(drawn.lids, clearance=arrays["clearance"]),
         ),
         parts=tuple(
             replace(
                 part,
-                vertices=numbers[f"part{index}.vertices"],
-                normals=numbers[f"part{index}.normals"],
+                vertices=arrays[f"part{index}.vertices"],
+                normals=arrays[f"part{index}.normals"],
             )
             for index, part in enumerate(reference.parts)
         ),
         eyes=tuple(
             replace(eye, center=center)
-            for eye, center in zip(reference.eyes, numbers["eyes"], strict=True)
+            for eye, center in zip(reference.eyes, arrays["eyes"], strict=True)
         ),
     )
 
