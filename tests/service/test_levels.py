@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from engine import LEVELS
+from engine.head import standard_head
 from service.levels import markdown
+
+PAGE = Path(__file__).parents[2] / "docs" / "levels.md"
 
 
 def test_levels_and_textures_are_rows() -> None:
@@ -24,3 +30,10 @@ def test_levels_and_textures_are_rows() -> None:
     assert table.startswith("Measured on Abacus 7 (2 cores), Python 3.11.7;")
     assert "| low | 1,200 | 2,400 | 1,210 | 2,500 | 2.5 | 1.0 | 0.50 | 0.10 |" in table
     assert "| all, baked in 9.0 s, cached 0.02 s | 1000 |" in table
+
+
+def test_the_page_says_how_fine_each_level_is() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    for level in LEVELS:
+        drawn = standard_head(level).drawn
+        assert f"| {level} | {len(drawn.vertices):,} | {len(drawn.triangles):,} |" in page
