@@ -7,11 +7,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import BoolArray, FloatArray
+from .channels import GROUPS
 from .dynamics import TABLEAUS, Pull
 from .errors import InvalidValue
 from .force_basis import jaw_rides, moving_pull, rest_basis
-from .muscle import LidMuscle
+from .muscle import AirPressure, LidMuscle
 from .rig import Model, Rig
 from .stability import largest_frequency, least_substeps
 from .timeline import TICKS_PER_SECOND
@@ -33,6 +34,7 @@ class Assembly:
         omega: Fastest mode, rad/s.
         lid_angles: Turn of upper and lower lid at activation 1 of each muscle, degrees,
             shape (m, 2, 2): muscle, side (left, right), lid (upper, lower).
+        air: Which rows of `basis` are air and not muscle, shape (m,).
         smoothing: Share of the way to its command that each channel goes in a tick, (channels,).
     """
 
@@ -46,6 +48,7 @@ class Assembly:
     omega: float
     lid_angles: FloatArray
     smoothing: FloatArray
+    air: BoolArray
 
     @property
     def tableau(self) -> FloatArray:
@@ -91,6 +94,7 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
         omega=omega,
         lid_angles=_lid_angles(rig),
         smoothing=_smoothing(rig),
+        air=np.array([isinstance(muscle, AirPressure) for muscle in rig.muscles], dtype=bool),
     )
 
 
@@ -111,15 +115,19 @@ def _smoothing(rig: Rig) -> FloatArray:
     for index, muscle in enumerate(rig.muscles):
         if isinstance(muscle, LidMuscle):
             lag[index] = p.lid_lag
-    for axis in ("yaw", "pitch"):
-        lag[channels.index("gaze", axis)] = GAZE_LAG
-    for axis in ("yaw", "pitch", "roll"):
-        lag[channels.index("head", axis)] = HEAD_LAG
+    for group, value in (("gaze", GAZE_LAG), ("head", HEAD_LAG), ("tongue", TONGUE_LAG)):
+        for axis in GROUPS[group]:
+            lag[channels.index(group, axis)] = value
+    lag[channels.index("gaze", "vergence")] = VERGENCE_LAG
     tick = 1.0 / TICKS_PER_SECOND
     return np.where(lag > 0.0, -np.expm1(-tick / np.maximum(lag, 1.0e-9)), 1.0)
 
 
 GAZE_LAG = 0.015
 """s; a saccade of 10 degrees takes about 50 ms."""
+VERGENCE_LAG = 0.060
+"""s; vergence is slower than a saccade: some 200 ms in all (Leigh and Zee 2015)."""
+TONGUE_LAG = 0.060
+"""s; put out at some 100 to 200 mm/s."""
 HEAD_LAG = 0.120
 """s; the head's inertia."""

@@ -1,24 +1,33 @@
-"""What commands set: one number a muscle, then jaw, gaze and head, in a fixed order."""
+"""What commands set: one number a muscle, then jaw, gaze, head and tongue, in a fixed order."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 JAW = ("pitch", "yaw", "thrust")
-GAZE = ("yaw", "pitch")
-HEAD = ("yaw", "pitch", "roll")
-GROUPS = {"jaw": JAW, "gaze": GAZE, "head": HEAD}
+GAZE = ("yaw", "pitch", "vergence")
+HEAD = ("yaw", "pitch", "roll", "thrust")
+TONGUE = ("thrust",)
+GROUPS = {"jaw": JAW, "gaze": GAZE, "head": HEAD, "tongue": TONGUE}
 LIMITS = {
     ("jaw", "pitch"): (-2.0, 35.0),
     ("jaw", "yaw"): (-10.0, 10.0),
     ("jaw", "thrust"): (-2.0, 8.0),
     ("gaze", "yaw"): (-45.0, 45.0),
     ("gaze", "pitch"): (-35.0, 35.0),
+    ("gaze", "vergence"): (-30.0, 60.0),
     ("head", "yaw"): (-80.0, 80.0),
     ("head", "pitch"): (-60.0, 60.0),
     ("head", "roll"): (-50.0, 50.0),
+    ("head", "thrust"): (-40.0, 60.0),
+    ("tongue", "thrust"): (0.0, 45.0),
 }
-"""Degrees, and mm of thrust: the range of a living neck, eye and jaw."""
+"""Degrees, and mm of thrust: the range of a living neck, eye, jaw and tongue.
+
+Vergence is the angle between the two lines of sight: positive crosses the eyes.
+"""
+MIRRORED = frozenset({("jaw", "yaw"), ("gaze", "yaw"), ("head", "yaw"), ("head", "roll")})
+"""Axes whose sign changes with the side."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +43,7 @@ class Channels:
     @property
     def count(self) -> int:
         """Length of the vector."""
-        return len(self.muscle_names) + len(JAW) + len(GAZE) + len(HEAD)
+        return len(self.muscle_names) + sum(len(axes) for axes in GROUPS.values())
 
     @property
     def muscle_count(self) -> int:

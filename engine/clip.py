@@ -200,6 +200,6 @@ def _from_arrays(arrays: Arrays) -> list[Frame]:
 
 
 def _pose(numbers: list[float]) -> Pose:
-    pitch, yaw, thrust, *gaze, turn, nod, tilt = numbers
+    pitch, yaw, thrust, *gaze, turn, nod, tilt, head_thrust, tongue_thrust = numbers
     left, right = (gaze[0], gaze[1]), (gaze[2], gaze[3])
-    return Pose(pitch, yaw, thrust, left, right, (turn, nod, tilt))
+    return Pose(pitch, yaw, thrust, left, right, (turn, nod, tilt), head_thrust, tongue_thrust)

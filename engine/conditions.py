@@ -29,8 +29,17 @@ Brackmann, "Facial nerve grading system", 1985). Forces within those words are o
 """
 FOREHEAD = ("frontalis",)
 EYE = ("orbicularis_oculi_pretarsal", "orbicularis_oculi_preseptal", "orbicularis_oculi_palpebral")
-NOT_FACIAL_NERVE = ("levator_palpebrae", "masseter", "temporalis", "pterygoid", "genioglossus")
-"""Muscles of other nerves (oculomotor, trigeminal, hypoglossal), which a facial palsy spares."""
+NOT_FACIAL_NERVE = (
+    "levator_palpebrae",
+    "masseter",
+    "temporalis",
+    "pterygoid",
+    "genioglossus",
+    "cheek_air",
+    "lip_air",
+)
+"""Muscles of other nerves (oculomotor, trigeminal, hypoglossal), which a facial palsy spares;
+and air."""
 CONDITIONS = ("tissue_age", "palsy", "relaxed")
 """Names of the conditions among a rig's changes."""
 

@@ -10,6 +10,8 @@ from .errors import InvalidNotation
 
 LETTERS: Mapping[str, float] = {"A": 0.2, "B": 0.4, "C": 0.6, "D": 0.8, "E": 1.0}
 """FACS intensities A (trace) to E (maximum) in even steps, as trackers count them."""
+REGIONS = ("upper", "lids", "lower", "cheeks", "jaw", "tongue", "gaze", "head")
+"""Where on the face a unit acts."""
 UNSCORED = 0.6
 """Intensity of a unit without letter, or with `*`: the middle of the scale, C."""
 
@@ -24,21 +26,38 @@ class ActionUnit:
     Attributes:
         name: "AU12".
         title: FACS' name, "Lip corner puller".
-        region: "upper", "lids", "lower" or "jaw", for grouping.
-        muscles: Weight of each muscle, named without side, at intensity 1.
-        jaw: Turn of the jaw at intensity 1, degrees.
+        region: One of `REGIONS`, for grouping.
+        muscles: Weight of each muscle, named without side, at intensity 1; below 0 a muscle with
+            tone relaxes, and air is sucked in.
+        pose: Turn (degrees) or thrust (mm) at intensity 1 by axis: "jaw.pitch", "gaze.yaw".
+        one_sided: True where FACS scores one side only: the unit without a side is the left one.
         curve: Knots (intensity, scale of the recipe), rising from (0, 0): the calibration that
             makes intensity the fraction of the full landmark displacement.
         source: Where the recipe comes from.
+        description: What is seen, after the FACS manual, in our words.
+        sources: Where each muscle of the recipe comes from, by muscle.
     """
 
     name: str
     title: str
     region: str = "lower"
     muscles: Mapping[str, float] = field(default_factory=dict)
-    jaw: float = 0.0
+    pose: Mapping[str, float] = field(default_factory=dict)
+    one_sided: bool = False
     curve: tuple[tuple[float, float], ...] = ((0.0, 0.0), (1.0, 1.0))
     source: str = ""
+    description: str = ""
+    sources: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def jaw(self) -> float:
+        """Turn of the jaw at intensity 1, degrees: what opens the mouth."""
+        return self.pose.get("jaw.pitch", 0.0)
+
+    @property
+    def still(self) -> bool:
+        """Whether it moves nothing at all."""
+        return not (any(self.muscles.values()) or any(self.pose.values()))
 
     def scale(self, intensity: float) -> float:
         """Return the factor on the recipe at `intensity`, 0..1, along the calibrated curve."""

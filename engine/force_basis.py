@@ -3,6 +3,7 @@
 Mode "rest": weights and directions are taken once, at rest, and a muscle's force is its row of a
 constant basis times its activation. Mode "current": both are recomputed as the skin moves, the
 literal reading of the paper. They differ by up to 10 mm at full AU4, so a session chooses one.
+Air presses along the rest pose's normals in both.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from .muscle import (
     RING_PEAK,
     SHEET_TAPER,
     SPHINCTER_REACH_MM,
+    AirPressure,
     LidMuscle,
     LinearMuscle,
     Muscle,
@@ -83,7 +85,9 @@ def rest_basis(
             force = force_density(muscle, nodes, ring=ring) * tissue.scale[:, None]
         force = _smooth(tissue, force, tissue.parameters.force_smoothing)
         force[tissue.held] = 0.0
-        gain = tissue.parameters.muscle_strength * gain_at(muscle, nodes.points[:, 0])
+        gain = gain_at(muscle, nodes.points[:, 0])
+        if not isinstance(muscle, AirPressure):  # Air is as strong in a weak face.
+            gain = tissue.parameters.muscle_strength * gain
         basis[row] = gain * (muscle.force_scale * force.T)
     return basis
 
@@ -122,6 +126,10 @@ def force_density(muscle: Muscle, samples: Samples, *, ring: str) -> FloatArray:
     if right:
         points, normals = points * flip, normals * flip
     assert not isinstance(left, LidMuscle)
+    if isinstance(left, AirPressure):
+        pressure = left.weights(points) * share_of(left, points, samples.jaw)
+        pressed = pressure[:, None] * normals
+        return pressed * flip if right else pressed
     if isinstance(left, SphincterMuscle):
         weight = left.weights(points, profile=ring)
     else:
@@ -161,7 +169,7 @@ def moving_pull(head: Head, tissue: TissueModel, muscles: Sequence[Muscle], *, r
     points, jaw = tissue.sheet.points, head.jaw_weight[:n]
     kinds, shapes, scales, shares = [], [], [], []
     for muscle in muscles:
-        if isinstance(muscle, LidMuscle):
+        if isinstance(muscle, LidMuscle | AirPressure):
             kinds.append(0)
             shapes.append(np.zeros(PACKED))
             scales.append(0.0)

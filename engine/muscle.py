@@ -286,13 +286,59 @@ class LidMuscle:
         _check_gain(self)
 
 
-Muscle: TypeAlias = LinearMuscle | SphincterMuscle | SheetMuscle | LidMuscle
+@dataclass(frozen=True)
+class AirPressure:
+    """Air in the mouth that presses a patch of cheek or lip out, or sucks it in: not a muscle.
+
+    It fills the same row of a command as a muscle does. Positive activation is pressure above
+    that of the room, negative below it. The force is along the skin's own normal, as that of a
+    fluid at rest is; the paper has nothing like it, and AU33, AU34 and AU35 need it.
+
+    Attributes:
+        name: "cheek_air.L".
+        center: Middle of the patch, mm.
+        extent: Half axes of the ellipsoid whose skin is the patch, mm.
+        force_scale: α, as a muscle's.
+        gain: Share of the pressure that acts in the left and in the right half of the face, 0..2.
+        acts_on: As a linear muscle's.
+        source: Where geometry and values come from.
+    """
+
+    name: str
+    center: Point
+    extent: Point
+    force_scale: float
+    gain: tuple[float, float] = (1.0, 1.0)
+    acts_on: str = "skin"
+    extension: bool = True
+    source: str = ""
+    kind: str = "air"
+
+    def __post_init__(self) -> None:
+        _check_gain(self)
+        if not all(math.isfinite(half) and half > 0.0 for half in self.extent):
+            raise InvalidValue(
+                f"air {self.name}: extent is {self.extent!r}; its half axes must be above 0"
+            )
+
+    def weights(self, points: FloatArray) -> FloatArray:
+        """Return the share of the pressure at skin `points`, shape (k, 3), mm → shape (k,).
+
+        It is 1 in the middle and falls smoothly to 0 where the cheek is bound to bone and gum.
+        """
+        offset = (points - np.array(self.center)) / np.array(self.extent)
+        within = np.clip(1.0 - (offset * offset).sum(axis=1), 0.0, 1.0)
+        return np.asarray(within**2)
+
+
+Muscle: TypeAlias = LinearMuscle | SphincterMuscle | SheetMuscle | LidMuscle | AirPressure
 
 KINDS: Mapping[str, type[Muscle]] = {
     "linear": LinearMuscle,
     "sphincter": SphincterMuscle,
     "sheet": SheetMuscle,
     "lid": LidMuscle,
+    "air": AirPressure,
 }
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray
-from .rig import Rig
+from .channels import JAW, LIMITS
+from .rig import MAX_ACTIVATION, Rig
 from .simulator import Simulator
 from .timeline import TICKS_PER_SECOND, Keyframe
 from .tissue.layers import sheet_of
@@ -154,13 +155,16 @@ def _scaled(rig: Rig, keyframe: Keyframe, factor: float) -> Keyframe:
         label, intensity = keyframe.emotion
         units = {t.key: t.intensity * intensity for t in rig.resolve_emotion(label).terms}
     vector = rig.contraction(units) * factor
-    pitch = rig.channels.index("jaw", "pitch")
     muscles = {
-        name: min(float(value), 1.5)
+        name: float(np.clip(value, -MAX_ACTIVATION, MAX_ACTIVATION))
         for name, value in zip(rig.muscle_names, vector, strict=False)
-        if value > 0.0
+        if value != 0.0
     }
-    return Keyframe(muscles=muscles, jaw={"pitch": min(float(vector[pitch]), 35.0)}, replace=True)
+    jaw = {
+        axis: float(np.clip(vector[rig.channels.index("jaw", axis)], *LIMITS["jaw", axis]))
+        for axis in JAW
+    }
+    return Keyframe(muscles=muscles, jaw=jaw, replace=True)
 
 
 def _timed(keyframe: Keyframe, fade: float) -> Keyframe:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any
@@ -12,7 +12,8 @@ import numpy as np
 
 from .arrays import FloatArray
 from .cache import content_key
-from .channels import GROUPS, LIMITS, Channels
+from .channels import GROUPS, LIMITS, MIRRORED, Channels
+from .combination import SIDES, Combination, together
 from .emotion import Emotion, find_emotion
 from .errors import EngineError, InvalidValue, UnknownName
 from .facs import ActionUnit, parse_facs, split_side
@@ -30,8 +31,8 @@ from .head import (
 )
 from .head.storage import source_key
 from .jaw import JawHinge
-from .muscle import LidMuscle, Muscle, SphincterMuscle, mirrored
-from .rig_data import load_action_units, load_emotions, load_muscles
+from .muscle import AirPressure, LidMuscle, Muscle, SphincterMuscle, mirrored
+from .rig_data import load_action_units, load_combinations, load_emotions, load_muscles
 from .timeline import LAYERS, Keyframe
 from .tissue import PAPER_PARAMETERS, TissueParameters, check_fields
 
@@ -65,6 +66,7 @@ EDITABLE = (
     "semi_major",
     "semi_minor",
     "hoop",
+    "extent",
     "upper",
     "lower",
     "gain",
@@ -123,6 +125,7 @@ class Rig:
         muscles: In channel order.
         action_units: By name.
         emotions: By name.
+        combinations: Rules of units that act together.
         jaw: Its hinge.
         model: The forms of the physics it runs unless a session says otherwise.
         recipe: What the person looks like; None for the paper's mask and heads from files.
@@ -135,6 +138,7 @@ class Rig:
     muscles: tuple[Muscle, ...]
     action_units: Mapping[str, ActionUnit]
     emotions: Mapping[str, Emotion]
+    combinations: tuple[Combination, ...] = ()
     jaw: JawHinge = field(default_factory=JawHinge)
     model: Model = field(default_factory=Model)
     recipe: Recipe | None = None
@@ -158,6 +162,7 @@ class Rig:
             self.muscles,
             sorted(self.action_units.items()),
             sorted(self.emotions.items()),
+            self.combinations,
             self.jaw,
             self.model,
             self.recipe,
@@ -209,18 +214,24 @@ class Rig:
         return self.action_units[name], side
 
     def contraction(self, units: Mapping[str, float]) -> FloatArray:
-        """Return the channel vector of action units at intensities: sums, held to their limits.
+        """Return the channel vector of action units at intensities, held to its limits.
+
+        Units add up, but for what the rig's combinations say of those that act together.
 
         Args:
-            units: Intensity 0..1 by "AU12", "L12" or "R12".
+            units: Intensity 0..1 by "AU12", "L12" or "R12"; a side counts before both.
 
         Raises:
             UnknownName: For a unit the rig does not have.
         """
+        levels: dict[str, dict[str, float]] = {side: {} for side in SIDES}
+        resolved = [(*self.resolve_unit(key), units[key]) for key in sorted(units)]
+        for unit, side, intensity in sorted(resolved, key=lambda entry: entry[1] != ""):
+            for each in self._sides_of(unit, side):
+                levels[each][unit.name] = intensity
         total = np.zeros(self.channels.count)
-        for key in sorted(units):
-            unit, side = self.resolve_unit(key)
-            total += self._unit_vector(unit, side) * unit.scale(units[key])
+        for side in SIDES:
+            total += self._side_vector(levels[side], side)
         return self._limited(total)
 
     def check(self, keyframe: Keyframe) -> list[str]:
@@ -234,13 +245,15 @@ class Rig:
             raise UnknownName("layer", keyframe.layer, LAYERS)
         warnings = []
         for key, value in keyframe.action_units.items():
-            unit, _ = self.resolve_unit(key)
+            unit, side = self.resolve_unit(key)
             _check_range(key, value, 0.0, 1.0)
-            if not unit.muscles and unit.jaw == 0.0:
+            if unit.still:
                 warnings.append(f"{key} moves nothing on this rig")
+            elif unit.one_sided and not side and value:
+                warnings.append(f"{key} is one-sided in FACS; without L or R it is the left one")
         for name, value in keyframe.muscles.items():
-            self.muscle(name)
-            _check_range(name, value, 0.0, MAX_ACTIVATION)
+            least = least_activation(self.muscle(name))
+            _check_range(name, value, least, MAX_ACTIVATION)
         for group, axes in GROUPS.items():
             for axis, value in getattr(keyframe, group).items():
                 if axis not in axes:
@@ -332,15 +345,24 @@ class Rig:
             "name": self.name,
             "model": asdict(self.model),
             "recipe": self.recipe.to_json() if self.recipe else None,
-            "muscles": [{**asdict(muscle), "activation": [0.0, 1.0]} for muscle in self.muscles],
-            "action_units": [
-                {**asdict(unit), "range": [0.0, 1.0]} for unit in self.action_units.values()
+            "muscles": [
+                {
+                    **asdict(muscle),
+                    "activation": [min(0.0, max(-1.0, least_activation(muscle))), 1.0],
+                }
+                for muscle in self.muscles
             ],
+            "action_units": [
+                {**asdict(unit), "jaw": unit.jaw, "range": [0.0, 1.0]}
+                for unit in self.action_units.values()
+            ],
+            "combinations": [asdict(rule) for rule in self.combinations],
             "emotions": [asdict(emotion) for emotion in self.emotions.values()],
             "tissue": self.parameters.to_json(),
-            "jaw": {axis: list(LIMITS["jaw", axis]) for axis in GROUPS["jaw"]},
-            "gaze": {axis: list(LIMITS["gaze", axis]) for axis in GROUPS["gaze"]},
-            "head": {axis: list(LIMITS["head", axis]) for axis in GROUPS["head"]},
+            **{
+                group: {axis: list(LIMITS[group, axis]) for axis in axes}
+                for group, axes in GROUPS.items()
+            },
             "layers": list(LAYERS),
             "mesh": {
                 "surface_vertices": len(head.points),
@@ -371,33 +393,59 @@ class Rig:
             muscles=muscles,
             action_units=self.action_units,
             emotions=self.emotions,
+            combinations=self.combinations,
             jaw=self.jaw,
             model=self.model,
         )
 
-    def _unit_vector(self, unit: ActionUnit, side: str) -> FloatArray:
+    def _sides_of(self, unit: ActionUnit, side: str) -> tuple[str, ...]:
+        """Return the sides of the face that a unit named with `side` moves."""
+        if unit.one_sided:
+            return (side or "L",)
+        return (side,) if side else SIDES
+
+    def _side_vector(self, levels: Mapping[str, float], side: str) -> FloatArray:
+        """Return what units at intensities `levels` do by their half of the face."""
+        acting = together(self.combinations, levels)
         vector = np.zeros(self.channels.count)
-        for index, name in enumerate(self.muscle_names):
-            stem, _, muscle_side = name.partition(".")
-            if side and muscle_side and muscle_side != side:
-                continue
-            # Half of a one-sided unit's midline muscle acts: it has only one half to give.
-            half = 0.5 if side and not muscle_side else 1.0
-            vector[index] = half * unit.muscles.get(name, unit.muscles.get(stem, 0.0))
-        vector[self.channels.index("jaw", "pitch")] = unit.jaw * (0.5 if side else 1.0)
+        for name, intensity in sorted(acting.levels.items()):
+            unit = self.action_units[name]
+            scale = unit.scale(intensity)
+            for index, share, stem in self._muscles_of(side):
+                muscle = self.muscle_names[index]
+                weight = unit.muscles.get(muscle, unit.muscles.get(stem, 0.0))
+                if weight:
+                    vector[index] += share * scale * weight * acting.factors.get((name, stem), 1.0)
+            for place, value in unit.pose.items():
+                group, axis = place.split(".")
+                # A one-sided unit does it all by itself; else half is each side's.
+                half = 1.0 if unit.one_sided else 0.5
+                sign = -1.0 if unit.one_sided and side == "R" and (group, axis) in MIRRORED else 1.0
+                vector[self.channels.index(group, axis)] += sign * half * scale * value
+        for index, share, stem in self._muscles_of(side):
+            vector[index] += share * acting.adds.get(stem, 0.0)
         return vector
 
+    def _muscles_of(self, side: str) -> Iterator[tuple[int, float, str]]:
+        """Give index, share and name without side of the muscles of one side of the face.
+
+        Half of a midline muscle acts for each side: it has only two halves to give.
+        """
+        for index, name in enumerate(self.muscle_names):
+            stem, _, own = name.partition(".")
+            if not own or own == side:
+                yield index, 1.0 if own else 0.5, stem
+
     def _limited(self, vector: FloatArray) -> FloatArray:
-        m = self.channels.muscle_count
-        vector[:m] = np.clip(vector[:m], -MAX_ACTIVATION, MAX_ACTIVATION)
-        pitch = self.channels.index("jaw", "pitch")
-        vector[pitch] = min(
-            max(vector[pitch], LIMITS["jaw", "pitch"][0]), LIMITS["jaw", "pitch"][1]
-        )
+        for index, muscle in enumerate(self.muscles):
+            vector[index] = np.clip(vector[index], least_activation(muscle), MAX_ACTIVATION)
+        for (group, axis), limits in LIMITS.items():
+            index = self.channels.index(group, axis)
+            vector[index] = np.clip(vector[index], *limits)
         return vector
 
     def _custom_unit(self, name: str, spec: Mapping[str, object]) -> ActionUnit:
-        known = {"muscles", "jaw", "title", "region"}
+        known = {"muscles", "jaw", "pose", "title", "region"}
         if not isinstance(spec, Mapping):
             raise InvalidValue(f"action unit {name!r} is {spec!r}; expected an object")
         for key in spec:
@@ -413,14 +461,22 @@ class Rig:
             if muscle not in stems:
                 raise UnknownName("muscle", str(muscle), stems)
             _check_range(f"{name}: weight of {muscle}", weight, -MAX_ACTIVATION, MAX_ACTIVATION)
-        jaw = spec.get("jaw", 0.0)
-        _check_range(f"{name}: jaw", jaw, *LIMITS["jaw", "pitch"])
+        pose = spec.get("pose", {})
+        if not isinstance(pose, Mapping):
+            raise InvalidValue(f"action unit {name!r}: pose is {pose!r}; expected an object")
+        if "jaw" in spec:
+            pose = {**pose, "jaw.pitch": spec["jaw"]}
+        places = {f"{group}.{axis}": limits for (group, axis), limits in LIMITS.items()}
+        for place, value in pose.items():
+            if place not in places:
+                raise UnknownName("pose axis", str(place), places)
+            _check_range(f"{name}: {place}", value, *places[place])
         return ActionUnit(
             name=name,
             title=str(spec.get("title", name)),
             region=str(spec.get("region", "custom")),
             muscles={str(k): float(v) for k, v in weights.items()},
-            jaw=float(jaw),  # type: ignore[arg-type]
+            pose={str(k): float(v) for k, v in pose.items() if v},
             source="yours",
         )
 
@@ -435,6 +491,11 @@ class Rig:
             raise InvalidValue(f"emotion {label!r}: synonyms are {synonyms!r}; expected words")
         words = tuple(str(word).strip().lower() for word in synonyms)
         return Emotion(label.strip().lower(), recipe, "yours", words)
+
+
+def least_activation(muscle: Muscle) -> float:
+    """Return the least activation of a muscle: below 0 for air, and for lids, which have tone."""
+    return -MAX_ACTIVATION if isinstance(muscle, AirPressure | LidMuscle) else 0.0
 
 
 @lru_cache(maxsize=4)
@@ -501,6 +562,7 @@ def rig_from_head(
         muscles=tuple(muscles),
         action_units=load_action_units(),
         emotions=load_emotions(),
+        combinations=load_combinations(),
     )
 
 
@@ -536,7 +598,7 @@ def living_tissue(recipe: Recipe) -> TissueParameters:
 
 
 def _as_strong(muscle: Muscle, strength: float) -> Muscle:
-    if isinstance(muscle, LidMuscle) or strength == 1.0:
+    if isinstance(muscle, LidMuscle | AirPressure) or strength == 1.0:
         return muscle
     return replace(muscle, force_scale=muscle.force_scale * strength)
 

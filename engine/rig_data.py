@@ -1,4 +1,4 @@
-"""The built-in muscles, action units and emotions, read from the data files."""
+"""The built-in muscles, action units, their combinations and emotions, read from the data files."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
+from .combination import Combination
 from .emotion import Emotion
 from .facs import ActionUnit
 from .head import Head
@@ -48,6 +49,12 @@ def load_action_units() -> dict[str, ActionUnit]:
     return units
 
 
+def load_combinations() -> tuple[Combination, ...]:
+    """Return the rules of units that act together."""
+    entries = _read("combinations.json")["combinations"]
+    return tuple(Combination(**{**entry, "units": tuple(entry["units"])}) for entry in entries)
+
+
 def load_emotions() -> dict[str, Emotion]:
     """Return the emotions by name."""
     emotions = {}
@@ -72,8 +79,9 @@ def _muscle(entry: Mapping[str, Any], head: Head, size: float) -> Muscle:
             values[name] = (
                 tuple(_place(end, head) for end in value) if pair else _place(value, head)
             )
-    if "normal" in values:
-        values["normal"] = tuple(values["normal"])
+    for name in ("normal", "extent"):
+        if name in values:
+            values[name] = tuple(float(value) for value in values[name])
     return KINDS[kind](**values)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .assembly import Assembly, compile_rig
+from .channels import GROUPS
 from .dynamics import Pull, Skull, Workspace, add_basis_forces, advance, workspace
 from .errors import InvalidValue, UnknownName
 from .force_basis import ride_jaw
@@ -265,9 +266,14 @@ class Simulator:
         assert state.skull is not None
         assembly, m = self.assembly, self.rig.channels.muscle_count
         activations = state.signals[:m]
-        if self.model.forces == "current":
-            return state.skull, self._moving_pull(activations, state.signals[m : m + 3])
         load = state.skull.load.copy()
+        if self.model.forces == "current":
+            # Air presses along the skin's normals at rest in either mode; it has no fibres to move.
+            air = np.where(assembly.air, activations, 0.0)
+            if air.any():
+                add_basis_forces(assembly.basis, air, load)
+            skull = state.skull._replace(load=load)
+            return skull, self._moving_pull(activations, state.signals[m : m + 3])
         add_basis_forces(assembly.basis, activations, load)
         return state.skull._replace(load=load), assembly.pull
 
@@ -278,7 +284,7 @@ class Simulator:
             activations: Shape (m,).
             jaw: Pitch and yaw, degrees, thrust, mm, shape (3,).
         """
-        active, pull = activations != 0.0, self.assembly.pull
+        active, pull = (activations != 0.0) & ~self.assembly.air, self.assembly.pull
         moving = Pull(
             pull.kinds[active],
             pull.shape[active],
@@ -320,11 +326,8 @@ class Simulator:
         state.still_ticks, state.diverged = 0, True
 
     def _frame(self, state: FaceState) -> Frame:
-        signals, channels = state.signals, self.rig.channels
-        m = channels.muscle_count
-        pitch, yaw, thrust, gaze_yaw, gaze_pitch, turn, nod, tilt = (float(s) for s in signals[m:])
-        gaze = (gaze_yaw, gaze_pitch)
-        pose = Pose(pitch, yaw, thrust, gaze_left=gaze, gaze_right=gaze, head=(turn, nod, tilt))
+        signals, m = state.signals, self.rig.channels.muscle_count
+        pose = self._posed(signals)
         return Frame(
             tick=state.tick,
             displacements=self._surface(state, pose),
@@ -332,6 +335,26 @@ class Simulator:
             pose=pose,
             asleep=state.asleep,
             diverged=state.diverged,
+        )
+
+    def _posed(self, signals: FloatArray) -> Pose:
+        """Return the rigid parts of a face; vergence turns each eye by half of its angle."""
+        axes = {
+            (group, axis): float(signals[self.rig.channels.index(group, axis)])
+            for group, names in GROUPS.items()
+            for axis in names
+        }
+        yaw, pitch = axes["gaze", "yaw"], axes["gaze", "pitch"]
+        inwards = axes["gaze", "vergence"] / 2.0
+        return Pose(
+            axes["jaw", "pitch"],
+            axes["jaw", "yaw"],
+            axes["jaw", "thrust"],
+            gaze_left=(yaw - inwards, pitch),
+            gaze_right=(yaw + inwards, pitch),
+            head=(axes["head", "yaw"], axes["head", "pitch"], axes["head", "roll"]),
+            head_thrust=axes["head", "thrust"],
+            tongue_thrust=axes["tongue", "thrust"],
         )
 
     def _surface(self, state: FaceState, pose: Pose) -> FloatArray:

@@ -32,8 +32,9 @@ class Keyframe:
         action_units: Intensity 0..1 by "AU12" (both sides), "L12" or "R12"; 0 lets go.
         muscles: Raw activation 0..1 by muscle name; 0 lets go.
         jaw: "pitch" and "yaw", degrees, "thrust", mm; as in gaze and head, 0 lets go.
-        gaze: "yaw" and "pitch", degrees: left and up are positive.
-        head: "yaw", "pitch" and "roll", degrees: left, up, to the left shoulder.
+        gaze: "yaw" and "pitch", degrees: left and up are positive; "vergence" crosses the eyes.
+        head: "yaw", "pitch" and "roll", degrees: left, up, to the left shoulder; "thrust", mm.
+        tongue: "thrust", mm out of the mouth.
         emotion: Label and intensity; it replaces the layer's action units.
         fade: Seconds over which the face moves there.
         hold: Seconds to stay before the whole layer lets go; None stays.
@@ -49,6 +50,7 @@ class Keyframe:
     jaw: Mapping[str, float] = field(default_factory=dict)
     gaze: Mapping[str, float] = field(default_factory=dict)
     head: Mapping[str, float] = field(default_factory=dict)
+    tongue: Mapping[str, float] = field(default_factory=dict)
     emotion: tuple[str, float] | None = None
     fade: float = 0.0
     hold: float | None = None
@@ -133,7 +135,7 @@ def ticks(seconds: float) -> int:
     return round(seconds * TICKS_PER_SECOND)
 
 
-_MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head")
+_MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head", "tongue")
 _NUMBERS = ("time", "fade", "fade_out", "weight")
 _KNOWN = {f.name for f in fields(Keyframe)} | {"facs"}
 

@@ -22,6 +22,8 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e
 Share = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=1)]
 Seconds = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=3600)]
 Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-180, le=180)]
+Millimetres = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-100, le=100)]
+Activation = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1, le=1)]
 Name = Annotated[str, Field(min_length=1, max_length=64)]
 Letter = Literal["A", "B", "C", "D", "E"]
 LayerName = Literal["idle", "mood", "emotion", "speech", "puppet"]
@@ -70,22 +72,30 @@ class Jaw(Body):
 
     pitch: Degrees | None = None
     yaw: Degrees | None = None
-    thrust: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-50, le=50)] | None = None
+    thrust: Millimetres | None = None
 
 
 class Gaze(Body):
-    """Where the eyes look, degrees: yaw to the face's left, pitch up."""
+    """Where the eyes look, degrees: yaw to the face's left, pitch up; vergence crosses them."""
 
     yaw: Degrees | None = None
     pitch: Degrees | None = None
+    vergence: Degrees | None = None
 
 
 class HeadPose(Body):
-    """How the head is held, degrees."""
+    """How the head is held: degrees, and mm of forward thrust."""
 
     yaw: Degrees | None = None
     pitch: Degrees | None = None
     roll: Degrees | None = None
+    thrust: Millimetres | None = None
+
+
+class Tongue(Body):
+    """Where the tongue goes: mm out of the mouth."""
+
+    thrust: Millimetres | None = None
 
 
 class Controls(Body):
@@ -96,10 +106,13 @@ class Controls(Body):
     )
     facs: str | None = Field(default=None, max_length=512, examples=["1C+2C+L12D+26"])
     scale: Scale = Field(default="linear", description="How letters are read.")
-    muscles: dict[Name, Share] | None = Field(default=None, max_length=256)
+    muscles: dict[Name, Activation] | None = Field(
+        default=None, max_length=256, description="Below 0 only for air and lids."
+    )
     jaw: Jaw | None = None
     gaze: Gaze | None = None
     head: HeadPose | None = None
+    tongue: Tongue | None = None
     arkit: dict[Name, Number] | None = Field(default=None, max_length=128)
     visemes: dict[Name, Number] | None = Field(default=None, max_length=64)
     fade: Seconds = Field(default=0.0, description="Seconds until the commands are reached.")

@@ -55,8 +55,10 @@ def _overruled(keyframe: Keyframe, rig: Rig) -> Iterator[str]:
         for muscle, stem in own.items():
             if _moves(unit.muscles, muscle, stem, side):
                 yield f"{muscle} is named itself, so {key} does not move it"
-        if unit.jaw and "pitch" in keyframe.jaw:
-            yield f"jaw.pitch is named itself, so {key} does not open the jaw"
+        for place in unit.pose:
+            group, axis = place.split(".")
+            if axis in getattr(keyframe, group):
+                yield f"{place} is named itself, so {key} does not move it"
 
 
 def _moves(weights: Mapping[str, float], muscle: str, stem: str, side: str) -> bool:

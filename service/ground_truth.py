@@ -22,6 +22,8 @@ _POSE = (
     "head_yaw",
     "head_pitch",
     "head_roll",
+    "head_thrust",
+    "tongue_thrust",
 )
 
 
@@ -57,6 +59,7 @@ def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
                 *(f"{value:.4f}" for value in clip.activations[index]),
                 *(f"{value:.3f}" for value in (pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)),
                 *(f"{value:.3f}" for value in (*pose.gaze_left, *pose.gaze_right, *pose.head)),
+                *(f"{value:.3f}" for value in (pose.head_thrust, pose.tongue_thrust)),
                 *(f"{value:.3f}" for value in landmarks.ravel()),
             ]
         )

@@ -7,7 +7,7 @@ endian; lengths are in metres, as in `surface.glb`, whose vertex order the frame
 |---|---|---|
 | 0 | uint8 | kind: 1 = surface |
 | 1 | uint8 | version of the kind: 1 |
-| 2 | uint16 | flags; bit 0: asleep, the last new frame until something moves |
+| 2 | uint16 | flags; bit 0: asleep, the last new frame until something moves; bit 1: thrusts |
 | 4 | uint32 | tick, 60 a second of the session's own time |
 | 8 | 4 float32 | rotation of the jaw, quaternion x, y, z, w |
 | 24 | 3 float32 | offset of the jaw's hinge from its rest place, x, y, z in metres |
@@ -17,6 +17,7 @@ endian; lengths are in metres, as in `surface.glb`, whose vertex order the frame
 | 66 | uint16 | moved count k: the vertices whose displacement follows |
 | 68 | ceil(s / 8) bytes | bitmap, least significant bit first: bit i is set if vertex i is moved |
 | even | k x 3 int16 | x, y, z displacement in steps of 20 micrometres, in vertex order |
+| after them | 2 float32 | only with bit 1: thrust of head and of tongue in metres |
 
 A zero byte pads the bitmap where the displacements would start at an odd offset. A vertex whose
 bit is not set is at rest, to half a step. `docs/stream.md` has a reader of 40 lines.
@@ -37,10 +38,12 @@ SUBPROTOCOL = "risorius.v1"
 KIND_SURFACE = 1
 FRAME_VERSION = 1
 FLAG_ASLEEP = 1
+FLAG_THRUSTS = 2
 GRID_METRES = 2e-5
 RATE = 60
 
 _HEADER = struct.Struct("<BBHI4f3f4f3fHH")
+_THRUSTS = struct.Struct("<2f")
 _MILLIMETRES_PER_STEP = GRID_METRES * 1000.0
 _STEP_LIMIT = 32767
 
@@ -61,6 +64,8 @@ class SurfaceFrame:
         gaze: Left yaw, left pitch, right yaw, right pitch [degrees].
         head: Yaw, pitch, roll [degrees].
         steps: Displacements from rest [grid steps], int16, shape (vertices, 3).
+        head_thrust: How far the head is held forward [m].
+        tongue_thrust: How far the tongue is put out [m].
     """
 
     tick: int
@@ -70,6 +75,8 @@ class SurfaceFrame:
     gaze: tuple[float, float, float, float]
     head: tuple[float, float, float]
     steps: npt.NDArray[np.int16]
+    head_thrust: float = 0.0
+    tongue_thrust: float = 0.0
 
     @property
     def displacements(self) -> npt.NDArray[np.float64]:
@@ -94,6 +101,8 @@ def surface_frame(frame: Frame, jaw: JawHinge) -> SurfaceFrame:
         gaze=(*pose.gaze_left, *pose.gaze_right),
         head=pose.head,
         steps=_to_grid(frame.displacements),
+        head_thrust=pose.head_thrust / 1000.0,
+        tongue_thrust=pose.tongue_thrust / 1000.0,
     )
 
 
@@ -108,10 +117,12 @@ def _to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
 def encode_frame(frame: SurfaceFrame) -> bytes:
     """Return the bytes of `frame`, as laid out above."""
     moved = np.asarray(frame.steps.any(axis=1))
+    thrusts = (frame.head_thrust, frame.tongue_thrust)
+    flags = (FLAG_ASLEEP if frame.asleep else 0) | (FLAG_THRUSTS if any(thrusts) else 0)
     header = _HEADER.pack(
         KIND_SURFACE,
         FRAME_VERSION,
-        FLAG_ASLEEP if frame.asleep else 0,
+        flags,
         frame.tick & 0xFFFFFFFF,
         *frame.jaw_quaternion,
         *frame.jaw_offset,
@@ -122,7 +133,8 @@ def encode_frame(frame: SurfaceFrame) -> bytes:
     )
     bitmap = np.packbits(moved, bitorder="little").tobytes()
     padding = b"\0" * (len(bitmap) % 2)
-    return header + bitmap + padding + frame.steps[moved].astype("<i2").tobytes()
+    tail = _THRUSTS.pack(*thrusts) if flags & FLAG_THRUSTS else b""
+    return header + bitmap + padding + frame.steps[moved].astype("<i2").tobytes() + tail
 
 
 def decode_frame(data: bytes) -> SurfaceFrame:
@@ -139,8 +151,11 @@ def decode_frame(data: bytes) -> SurfaceFrame:
         raise MalformedFrame(f"kind {kind} version {version} is not surface version 1")
     bitmap_size = (vertices + 7) // 8
     start = _HEADER.size + bitmap_size + bitmap_size % 2
-    if len(data) != start + 6 * moved_count:
-        raise MalformedFrame(f"{len(data)} bytes, but the header says {start + 6 * moved_count}")
+    end = start + 6 * moved_count
+    size = end + (_THRUSTS.size if flags & FLAG_THRUSTS else 0)
+    if len(data) != size:
+        raise MalformedFrame(f"{len(data)} bytes, but the header says {size}")
+    thrusts = _THRUSTS.unpack_from(data, end) if flags & FLAG_THRUSTS else (0.0, 0.0)
     bitmap = np.frombuffer(data, np.uint8, bitmap_size, _HEADER.size)
     moved = np.unpackbits(bitmap, count=vertices, bitorder="little").astype(bool)
     if np.count_nonzero(moved) != moved_count:
@@ -155,4 +170,6 @@ def decode_frame(data: bytes) -> SurfaceFrame:
         gaze=(numbers[7], numbers[8], numbers[9], numbers[10]),
         head=(numbers[11], numbers[12], numbers[13]),
         steps=steps,
+        head_thrust=thrusts[0],
+        tongue_thrust=thrusts[1],
     )

@@ -52,7 +52,7 @@ _DERIVED_AT_ONCE = 16
 """Rigs that may be derived or wait for it: a new person takes a second or two."""
 _PASSING_SECONDS = 60.0
 _ID = re.compile("[0-9a-f]{16}")
-_UNIT_FIELDS = {"muscles", "jaw", "title", "region"}
+_UNIT_FIELDS = {"muscles", "jaw", "pose", "title", "region"}
 _CHANGES = ("recipe", "tissue", "muscles", "action_units", "emotions", "name")
 
 

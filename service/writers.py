@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 _NAMED = ("action_units", "muscles")
-_POSED = ("jaw", "gaze", "head")
+_POSED = ("jaw", "gaze", "head", "tongue")
 
 
 def with_writers(report: Mapping[str, object]) -> dict[str, object]:

@@ -24,8 +24,11 @@ from .basis import UnitBasis
 
 REFITS = 4
 """Times that each unit's field is taken anew at the intensity found."""
-PARSIMONY = 0.02
+PARSIMONY = 0.1
 """Weight of the squared intensity of units that nobody asked for, beside the misfit."""
+ONE_SIDED = 0.002
+"""The same for one side of a unit that is asked for on both: less, for a weak side is likelier than
+a unit that nobody asked for."""
 UNASKED_START = 0.5
 """Intensity at which the field of a unit that nobody asked for is first taken."""
 SHOWN = 0.05
@@ -201,7 +204,7 @@ def _fit(
     halves = [(root * side[u]).ravel() for side in (basis.left, basis.right) for u in chosen]
     spare = np.where(np.concatenate([wanted.max(axis=0), *wanted]) > 0.0, 0.0, PARSIMONY)
     # One side alone is an explanation only where both are none.
-    spare[len(chosen) :] += np.where(np.tile(wanted[0] == wanted[1], 2), PARSIMONY, 0.0)
+    spare[len(chosen) :] += np.where(np.tile(wanted[0] == wanted[1], 2), ONE_SIDED, 0.0)
     for _ in range(REFITS):
         both = [
             (root * basis.per_intensity(unit, float(level))).ravel()

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..dynamics import Pull, add_muscle_forces
 from ..force_basis import ride_jaw
-from ..muscle import RING_PEAK, LidMuscle, Muscle, SphincterMuscle
+from ..muscle import RING_PEAK, AirPressure, LidMuscle, Muscle, SphincterMuscle
 from ..simulator import Snapshot
 
 NEAREST = 4
@@ -31,7 +31,7 @@ class MuscleState:
         activation: As the tissue feels it now, behind its command by the muscle's lag.
         force: Sum of the sizes of its nodal forces, paper stiffness units x mm.
         rest_length: Of the line from attachment to insertion, or of a sphincter's ring, at rest,
-            mm; None for muscles that turn lids.
+            mm; None for muscles that turn lids, and for air.
         contraction: By how much that is shorter now, mm; negative where others stretch it.
         contraction_share: The same as a share of the rest length.
         turn: Turn of the upper and lower lid by a lid's muscle, degrees; None for others.
@@ -62,6 +62,9 @@ def muscle_states(snapshot: Snapshot, forces: FloatArray) -> list[MuscleState]:
             turn = (muscle.upper * gain, muscle.lower * gain)
             states.append(MuscleState(muscle.name, activation, force, None, None, None, turn))
             continue
+        if isinstance(muscle, AirPressure):
+            states.append(MuscleState(muscle.name, activation, force, None, None, None))
+            continue
         rest, now = muscle_lengths(snapshot, index, muscle)
         states.append(
             MuscleState(muscle.name, activation, force, rest, rest - now, (rest - now) / rest)
@@ -80,6 +83,9 @@ def muscle_forces(snapshot: Snapshot) -> FloatArray:
     pitch, yaw, thrust = (float(value) for value in snapshot.signals[m : m + 3])
     forces = np.zeros((m, 3, n))
     for row in np.flatnonzero(activations):
+        if assembly.air[row]:
+            forces[row] = activations[row] * assembly.basis[row]
+            continue
         one = slice(row, row + 1)
         pull = assembly.pull
         moved = ride_jaw(
@@ -109,7 +115,7 @@ def muscle_lengths(snapshot: Snapshot, index: int, muscle: Muscle) -> tuple[floa
     if isinstance(muscle, SphincterMuscle):
         ring = _ring(muscle)
         return _ring_length(ring), _ring_length(_carried(snapshot, ring))
-    assert not isinstance(muscle, LidMuscle)
+    assert not isinstance(muscle, LidMuscle | AirPressure)
     attachment, insertion = (_ends(end) for end in (muscle.attachment, muscle.insertion))
     assembly = snapshot.assembly
     m = assembly.rig.channels.muscle_count

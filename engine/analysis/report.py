@@ -176,9 +176,8 @@ def _muscle(state: MuscleState) -> dict[str, object]:
     }
     if state.turn is not None:
         return {**line, "turn_degrees": [round(angle, 3) for angle in state.turn]}
-    assert state.rest_length is not None
-    assert state.contraction is not None
-    assert state.contraction_share is not None
+    if state.rest_length is None or state.contraction is None or state.contraction_share is None:
+        return line
     return {
         **line,
         "length_mm": round(state.rest_length - state.contraction, 3),

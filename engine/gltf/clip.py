@@ -18,6 +18,7 @@ from .error import FRAMES_AT_ONCE, Check, Motion
 from .pose import RigidMotion, motions
 from .scene import Pivot, add_pivots, add_rigid_parts, file_extras
 from .skin import add_skin, turn_of
+from .tongue import TONGUE, out_weight
 
 ANIMATION_NAME = "performance"
 NORMAL_FRAMES = 150
@@ -77,8 +78,11 @@ def clip_to_glb(
         turns=list(_turns(clip, face, basis)),
         smallest=SHARE_DROPPED * tolerance,
     )
-    add_rigid_parts(builder, rig.head, pivots)
+    parts = add_rigid_parts(builder, rig.head, pivots)
     channels = [Channel(skin, "weights", basis.weights.ravel()), *_pose_channels(clip, pivots)]
+    out = np.array([out_weight(pose) for pose in clip.poses])
+    if out.any() and TONGUE in parts:
+        channels.append(Channel(parts[TONGUE], "weights", out))
     builder.animation(ANIMATION_NAME, np.arange(len(clip.displacements)) / clip.fps, channels)
     data = builder.to_bytes()
     progress(1.0)

@@ -12,6 +12,7 @@ from .drawn import DrawnFace, roots_of, turn_with, unit_normals
 from .materials import look_name
 from .pose import RigidMotion, motions
 from .scene import file_extras, part_attributes, rigid_parts, skin_attributes
+from .tongue import posed_tongue
 
 
 def face_to_glb(rig: Rig, frame: Frame, *, textures: Textures | None = None) -> bytes:
@@ -50,7 +51,8 @@ def face_to_glb(rig: Rig, frame: Frame, *, textures: Textures | None = None) -> 
         add(part.name, attributes, part.triangles, part.material)
     for part in rigid_parts(rig.head):
         own = moved[part.follows]
-        placed = _placed(own.move(part.vertices), own.turn(part.normals), moved["head"])
+        at, facing = posed_tongue(part, frame.pose)
+        placed = _placed(own.move(at), own.turn(facing), moved["head"])
         add(part.name, {**part_attributes(part), **placed}, part.triangles, look_name(part))
     return builder.to_bytes()
 

@@ -59,7 +59,7 @@ def motions(head: Head, jaw: JawHinge, pose: Pose) -> dict[str, RigidMotion]:
     still = np.zeros(3)
     rotation, shift = jaw.transform(pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)
     moved = {
-        "head": RigidMotion(turned(*pose.head), NECK_PIVOT, still),
+        "head": RigidMotion(turned(*pose.head), NECK_PIVOT, np.array([0.0, 0.0, pose.head_thrust])),
         "skull": RigidMotion(np.eye(3), still, still),
         "jaw": RigidMotion(rotation, np.array(jaw.center), shift),
     }

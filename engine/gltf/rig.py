@@ -21,7 +21,9 @@ from .scene import (
     part_attributes,
     part_node_name,
 )
-from .skin import Target, add_skin, add_targets, turn_of
+from .skin import add_skin, turn_of
+from .targets import Target, add_targets
+from .tongue import posed_tongue
 
 SMALLEST_MOVE = 2e-3
 """Vertices that an action unit moves by less are taken as still: a tenth of the stream's grid, mm.
@@ -40,7 +42,7 @@ def rig_to_glb(
     targets are the same, in the same order, on every mesh that has any: skin and strands (one
     mesh), lower teeth, lower gum and tongue; so a jaw action unit set on all of them moves the
     teeth with the lips. Between 0 and 1 a target moves along straight lines, which for a jaw is not
-    quite its arc.
+    quite its arc. Units of gaze and head turn nodes: their targets move nothing.
 
     Args:
         rig: What to write.
@@ -78,9 +80,10 @@ def targets_to_glb(
 
 def _jaw_target(rig: Rig, part: Part, frame: Frame) -> Target:
     jaw = motions(rig.head, rig.jaw, frame.pose)["jaw"]
+    vertices, normals = posed_tongue(part, frame.pose)
     return {
-        "POSITION": metres(jaw.move(part.vertices) - part.vertices),
-        "NORMAL": (jaw.turn(part.normals) - part.normals).astype(np.float32),
+        "POSITION": metres(jaw.move(vertices) - part.vertices),
+        "NORMAL": (jaw.turn(normals) - part.normals).astype(np.float32),
     }
 
 

@@ -19,10 +19,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..head.head import Head, Part
+from ..head.parts.tongue import FULL_THRUST
 from ..jaw import JawHinge
 from .builder import Array, GlbBuilder, metres
 from .drawn import unit_normals
 from .materials import look_name
+from .targets import add_targets
+from .tongue import TARGET_NAME, TONGUE, out_target
 
 NECK_PIVOT = np.array([0.0, -90.0, -10.0])
 """Point that head yaw, pitch and roll turn about, head frame, mm: the middle of the neck."""
@@ -76,23 +79,35 @@ def add_pivot(
 
 def add_rigid_parts(
     builder: GlbBuilder, head: Head, pivots: Mapping[str, Pivot], *, skip: str | None = None
-) -> None:
-    """Add the parts that move with a bone or an eye, relative to their pivots.
+) -> dict[str, int]:
+    """Add the parts that move with a bone or an eye, relative to their pivots; return the nodes.
 
-    Those that follow `skip` are left out, for a caller that has more to say about them.
+    Those that follow `skip` are left out, for a caller that has more to say about them. The tongue
+    has a morph target, by which it is put out.
     """
+    nodes = {}
     for part in rigid_parts(head):
         if part.follows == skip:
             continue
         pivot = pivots[part.follows]
         attributes = part_attributes(part, origin=pivot.origin)
-        primitive = builder.primitive(attributes, part.triangles, material=look_name(part))
-        builder.node(
+        out = part.name == TONGUE
+        primitive = builder.primitive(
+            attributes,
+            part.triangles,
+            material=look_name(part),
+            targets=add_targets(builder, [out_target(part)], smallest=1e-3) if out else (),
+        )
+        extras: dict[str, object] = {"role": "part", "material": part.material}
+        if out:
+            extras["thrust"] = FULL_THRUST * 1e-3
+        nodes[part.name] = builder.node(
             part_node_name(part),
             parent=pivot.node,
-            mesh=builder.mesh(part.name, [primitive]),
-            extras={"role": "part", "material": part.material},
+            mesh=builder.mesh(part.name, [primitive], target_names=(TARGET_NAME,) if out else ()),
+            extras=extras,
         )
+    return nodes
 
 
 def rigid_parts(head: Head) -> Sequence[Part]:

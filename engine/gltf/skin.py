@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -12,12 +12,7 @@ from .builder import GlbBuilder, metres
 from .drawn import DrawnFace
 from .materials import look_name
 from .scene import Pivot, part_attributes, skin_attributes
-
-SMALLEST_TURN = 5e-3
-"""Normals that change by less are taken as still: a third of a degree."""
-
-Target = Mapping[str, npt.NDArray[np.float32]]
-"""Change of "POSITION" [m] and "NORMAL", shape (n, 3)."""
+from .targets import Target, add_targets
 
 
 def add_skin(
@@ -72,21 +67,6 @@ def add_skin(
         translation=-parent.origin,
         extras={"role": "skin", "material": "skin"},
     )
-
-
-def add_targets(
-    builder: GlbBuilder, targets: Sequence[Target], *, smallest: float
-) -> list[dict[str, int]]:
-    """Store morph targets, without moves below `smallest` [mm] and turns that do not show."""
-    stored = []
-    for target in targets:
-        kept = {
-            "POSITION": builder.delta(target["POSITION"], smallest=smallest * 1e-3, bounds=True)
-        }
-        if "NORMAL" in target:
-            kept["NORMAL"] = builder.delta(target["NORMAL"], smallest=SMALLEST_TURN)
-        stored.append(kept)
-    return stored
 
 
 def turn_of(face: DrawnFace, displacements: FloatArray) -> FloatArray:

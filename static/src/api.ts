@@ -151,7 +151,7 @@ function errorText(answer: unknown, status: number): string {
 }
 
 type AxisLimits = Record<string, [number, number]>;
-type RigAnswer = Partial<RigInfo> & Partial<Record<'jaw' | 'gaze' | 'head', AxisLimits>>;
+type RigAnswer = Partial<RigInfo> & Partial<Record<'jaw' | 'gaze' | 'head' | 'tongue', AxisLimits>>;
 
 /** Older and newer services may leave fields out; the panels then show less, and nothing fails. */
 function completeRig(asked: string, body: RigAnswer): RigInfo {
@@ -164,7 +164,12 @@ function completeRig(asked: string, body: RigAnswer): RigInfo {
     tissue: body.tissue ?? {},
     recipe: body.recipe ?? null,
     mesh: body.mesh ?? {},
-    limits: { jaw: body.jaw ?? {}, gaze: body.gaze ?? {}, head: body.head ?? {} },
+    limits: {
+      jaw: body.jaw ?? {},
+      gaze: body.gaze ?? {},
+      head: body.head ?? {},
+      tongue: body.tongue ?? {},
+    },
   };
 }
 

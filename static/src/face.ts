@@ -47,6 +47,9 @@ export interface FacePose {
   gaze: readonly [number, number, number, number];
   /** Yaw, pitch, roll [degrees]. */
   head: readonly [number, number, number];
+  /** How far the head is held forward, and the tongue put out [m]. */
+  headThrust: number;
+  tongueThrust: number;
 }
 
 export type Triple = [number, number, number];
@@ -87,6 +90,8 @@ interface RidingStrands {
 }
 
 const MILLIMETRES = 1000;
+/** How far a file puts the tongue out that does not say [m]. */
+const DEFAULT_TONGUE_THRUST = 0.04;
 const DEFAULT_GRID = 2e-5;
 /** What is wet below this height is in the mouth; light fades between lips and throat [m, head frame]. */
 const MOUTH_TOP = -0.04;
@@ -113,6 +118,8 @@ export class Face {
   private readonly strands: RidingStrands[] = [];
   private readonly nodes = new Map<string, Object3D>();
   private readonly jawRest: Vector3;
+  private readonly headRest: Vector3;
+  private readonly tongue: Mesh | undefined;
   private readonly grid: number;
   private readonly maps = new FaceMaps();
   private readonly mapAddresses: Partial<Record<MapName, string>>;
@@ -195,6 +202,8 @@ export class Face {
     this.names = (tissue?.userData as Partial<SkinExtras> | undefined)?.names ?? extras.names ?? [];
     this.root.traverse((node) => this.nodes.set(nodeName(node), node));
     this.jawRest = this.nodes.get('jaw')?.position.clone() ?? new Vector3();
+    this.headRest = this.nodes.get('head')?.position.clone() ?? new Vector3();
+    this.tongue = meshes(this.root).find((mesh) => nodeName(mesh) === 'tongue');
 
     const index = skin.geometry.getIndex();
     if (index === null) throw new Error('The skin has no triangles.');
@@ -264,7 +273,9 @@ export class Face {
       this.turn('eye.L', rotation(pose.gaze[0], pose.gaze[1], 0)),
       this.turn('eye.R', rotation(pose.gaze[2], pose.gaze[3], 0)),
       this.turn('jaw', new Quaternion(...pose.jawQuaternion)),
-      this.slideJaw(pose.jawOffset),
+      this.slide('jaw', this.jawRest, pose.jawOffset),
+      this.slide('head', this.headRest, [0, 0, pose.headThrust]),
+      this.putOutTongue(pose.tongueThrust),
     ];
     const changed = moved || turned.includes(true);
     if (changed) this.updateEyes();
@@ -391,11 +402,22 @@ export class Face {
     return true;
   }
 
-  private slideJaw(offset: readonly [number, number, number]): boolean {
-    const jaw = this.nodes.get('jaw');
-    const place = new Vector3(...offset).add(this.jawRest);
-    if (jaw === undefined || jaw.position.equals(place)) return false;
-    jaw.position.copy(place);
+  private slide(name: string, rest: Vector3, offset: readonly [number, number, number]): boolean {
+    const node = this.nodes.get(name);
+    const place = new Vector3(...offset).add(rest);
+    if (node === undefined || node.position.equals(place)) return false;
+    node.position.copy(place);
+    return true;
+  }
+
+  /** The tongue's one morph target is the tongue put out by `thrust` of its extras [m]. */
+  private putOutTongue(thrust: number): boolean {
+    const tongue = this.tongue;
+    if (tongue?.morphTargetInfluences === undefined) return false;
+    const full = (tongue.userData as { thrust?: number }).thrust ?? DEFAULT_TONGUE_THRUST;
+    const weight = thrust / full;
+    if (tongue.morphTargetInfluences[0] === weight) return false;
+    tongue.morphTargetInfluences[0] = weight;
     return true;
   }
 }

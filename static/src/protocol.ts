@@ -24,7 +24,9 @@ const OFFSET = {
 const KIND_SURFACE = 1;
 const VERSION = 1;
 const FLAG_ASLEEP = 1;
+const FLAG_THRUSTS = 2;
 const BYTES_PER_DISPLACEMENT = 6;
+const BYTES_OF_THRUSTS = 8;
 
 /** One tick of the face. Displacements are absolute, from rest, so any frame stands alone. */
 export interface SurfaceFrame {
@@ -42,6 +44,10 @@ export interface SurfaceFrame {
   gaze: [number, number, number, number];
   /** Yaw, pitch, roll [degrees]. */
   head: [number, number, number];
+  /** How far the head is held forward [m]. */
+  headThrust: number;
+  /** How far the tongue is put out [m]. */
+  tongueThrust: number;
   vertexCount: number;
   /** Indices of the vertices that are off their rest position, ascending. */
   moved: Uint16Array;
@@ -73,12 +79,14 @@ export function decodeFrame(buffer: ArrayBuffer): SurfaceFrame {
   const movedCount = view.getUint16(OFFSET.movedCount, true);
   const start = displacementsStart(vertexCount);
   const end = start + movedCount * BYTES_PER_DISPLACEMENT;
-  if (buffer.byteLength < end) {
+  const flags = view.getUint16(OFFSET.flags, true);
+  const thrusts = (flags & FLAG_THRUSTS) !== 0;
+  const least = end + (thrusts ? BYTES_OF_THRUSTS : 0);
+  if (buffer.byteLength < least) {
     throw new ProtocolError(
-      `${movedCount} moved vertices of ${vertexCount} need ${end} bytes, the frame has ${buffer.byteLength}.`,
+      `${movedCount} moved vertices of ${vertexCount} need ${least} bytes, the frame has ${buffer.byteLength}.`,
     );
   }
-  const flags = view.getUint16(OFFSET.flags, true);
   const float = (index: number): number => view.getFloat32(OFFSET.jawQuaternion + 4 * index, true);
   return {
     kind,
@@ -90,6 +98,8 @@ export function decodeFrame(buffer: ArrayBuffer): SurfaceFrame {
     jawOffset: [float(4), float(5), float(6)],
     gaze: [float(7), float(8), float(9), float(10)],
     head: [float(11), float(12), float(13)],
+    headThrust: thrusts ? view.getFloat32(end, true) : 0,
+    tongueThrust: thrusts ? view.getFloat32(end + 4, true) : 0,
     vertexCount,
     moved: readBitmap(new Uint8Array(buffer, OFFSET.bitmap), vertexCount, movedCount),
     displacements: new Int16Array(buffer, start, movedCount * 3),
@@ -126,6 +136,7 @@ export interface Held {
   jaw?: Numbers;
   gaze?: Numbers;
   head?: Numbers;
+  tongue?: Numbers;
   emotion?: { label: string; intensity: number };
 }
 
@@ -195,6 +206,7 @@ export interface Controls {
   jaw?: Numbers;
   gaze?: Numbers;
   head?: Numbers;
+  tongue?: Numbers;
 }
 
 /** Move what is named, as PATCH does. */

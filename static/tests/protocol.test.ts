@@ -24,6 +24,8 @@ interface Golden {
   jaw_offset: number[];
   gaze: number[];
   head: number[];
+  /** Of head and tongue [m]; only where one is not 0. */
+  thrusts?: number[];
   vertex_count: number;
   /** How many vertices moved. */
   moved: number;
@@ -59,6 +61,7 @@ describe('decodeFrame', () => {
       [frame.jawOffset, golden.jaw_offset],
       [frame.gaze, golden.gaze],
       [frame.head, golden.head],
+      [[frame.headThrust, frame.tongueThrust], golden.thrusts ?? [0, 0]],
     ] as const) {
       got.forEach((value, index) => {
         expect(value).toBeCloseTo(wanted[index]!, 5);

@@ -8,18 +8,12 @@ from typing import Any
 import numpy as np
 from small_face import small_rig
 
+from engine.frame import Pose
 
-def pose(**changes: Any) -> Any:
+
+def pose(**changes: Any) -> Pose:
     """A pose at rest but for `changes`."""
-    rest = {
-        "jaw_pitch": 0.0,
-        "jaw_yaw": 0.0,
-        "jaw_thrust": 0.0,
-        "gaze_left": (0.0, 0.0),
-        "gaze_right": (0.0, 0.0),
-        "head": (0.0, 0.0, 0.0),
-    }
-    return SimpleNamespace(**{**rest, **changes})
+    return Pose(**changes)
 
 
 def small_frame(displacements: np.ndarray, **changes: Any) -> Any:

@@ -12,9 +12,17 @@ from hypothesis import strategies as st
 
 from engine import InvalidValue
 from engine.dynamics import Pull, add_muscle_forces
-from engine.force_basis import jaw_rides, moving_pull, packed_shape, ride_jaw
+from engine.force_basis import (
+    Samples,
+    force_density,
+    jaw_rides,
+    moving_pull,
+    packed_shape,
+    ride_jaw,
+)
 from engine.muscle import (
     RING_PEAK,
+    AirPressure,
     LidMuscle,
     LinearMuscle,
     SheetMuscle,
@@ -182,7 +190,7 @@ def test_the_moving_muscles_start_as_strong_as_the_resting_ones_say(name, reques
     n, sheet = tissue.node_count, tissue.sheet
     pull = moving_pull(rig.head, tissue, rig.muscles, ring=rig.model.sphincter)
     for row, muscle in enumerate(rig.muscles):
-        if isinstance(muscle, LidMuscle):
+        if isinstance(muscle, LidMuscle | AirPressure):
             continue
         one = Pull(*(part[row : row + 1] for part in pull))
         force = np.zeros_like(tissue.arrays.rest)
@@ -222,3 +230,22 @@ def test_nonsense_geometry_is_refused_with_what_was_given():
         LinearMuscle("m", (0, 0, 0), (10, 0, 0), 15.0, 90.0, 1.0, 1.0)
     with pytest.raises(InvalidValue, match="semi_minor"):
         SphincterMuscle("r", (0, 0, 1), (0, 0, 0), (0, 0, 1), 20.0, 0.0, 1.0)
+
+
+def test_air_presses_along_the_skins_normals_and_fades_at_its_edge():
+    air = AirPressure(
+        "cheek_air.L", center=(40.0, 0.0, 0.0), extent=(10.0, 20.0, 30.0), force_scale=1.0
+    )
+    points = np.array([[40.0, 0.0, 0.0], [45.0, 0.0, 0.0], [50.0, 0.0, 0.0], [40.0, 30.0, 0.0]])
+    normals = np.array([[0.6, 0.0, 0.8]] * 4)
+    assert air.weights(points) == pytest.approx([1.0, 0.5625, 0.0, 0.0])
+    samples = Samples(points, normals, np.zeros(4))
+    force = force_density(air, samples, ring="ring")
+    assert force == pytest.approx(air.weights(points)[:, None] * normals)
+    flip = np.array([-1.0, 1.0, 1.0])
+    other = force_density(
+        mirrored(air), Samples(points * flip, normals * flip, np.zeros(4)), ring="ring"
+    )
+    assert other == pytest.approx(force * flip)
+    with pytest.raises(InvalidValue, match="extent"):
+        replace(air, extent=(1.0, 0.0, 1.0))

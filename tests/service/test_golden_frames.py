@@ -55,21 +55,31 @@ CASES = {
         steps=steps_at(3, {0: (32767,) * 3, 1: (-32767,) * 3, 2: (32767, 0, -32767)}),
         **REST,
     ),
+    "thrusts": SurfaceFrame(
+        tick=12,
+        asleep=False,
+        steps=steps_at(5, {2: (4, -5, 6)}),
+        head_thrust=0.03125,
+        tongue_thrust=0.015625,
+        **POSED,
+    ),
     "wave": SurfaceFrame(tick=3600, asleep=False, steps=wave(777), **POSED),
 }
 
 
 def described(frame: SurfaceFrame) -> dict[str, object]:
     """What the JSON beside the bytes says: header fields, and metres for every vertex."""
+    thrusts = [frame.head_thrust, frame.tongue_thrust]
     return {
         "kind": 1,
         "version": 1,
-        "flags": int(frame.asleep),
+        "flags": int(frame.asleep) + 2 * bool(frame.head_thrust or frame.tongue_thrust),
         "tick": frame.tick,
         "jaw_quaternion": list(frame.jaw_quaternion),
         "jaw_offset": list(frame.jaw_offset),
         "gaze": list(frame.gaze),
         "head": list(frame.head),
+        **({"thrusts": thrusts} if any(thrusts) else {}),
         "vertex_count": len(frame.steps),
         "moved": int(frame.steps.any(axis=1).sum()),
         "displacements": np.round(frame.displacements, 8).tolist(),

@@ -32,6 +32,8 @@ frames = st.builds(
     gaze=st.tuples(number, number, number, number),
     head=st.tuples(number, number, number),
     steps=steps,
+    head_thrust=number,
+    tongue_thrust=number,
 )
 
 
@@ -40,7 +42,16 @@ frames = st.builds(
 def test_a_frame_survives_the_wire(frame: SurfaceFrame) -> None:
     read = decode_frame(encode_frame(frame))
     np.testing.assert_array_equal(read.steps, frame.steps)
-    for field in ("tick", "asleep", "jaw_quaternion", "jaw_offset", "gaze", "head"):
+    for field in (
+        "tick",
+        "asleep",
+        "jaw_quaternion",
+        "jaw_offset",
+        "gaze",
+        "head",
+        "head_thrust",
+        "tongue_thrust",
+    ):
         assert getattr(read, field) == getattr(frame, field)
 
 

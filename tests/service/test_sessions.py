@@ -71,8 +71,9 @@ def test_every_part_of_the_face_can_be_commanded(client: TestClient, session: st
         session,
         muscles={"zygomatic_major.L": 0.6},
         jaw={"pitch": 12, "yaw": 2},
-        gaze={"yaw": 10, "pitch": -5},
-        head={"yaw": 5, "pitch": 5, "roll": 5},
+        gaze={"yaw": 10, "pitch": -5, "vergence": 6},
+        head={"yaw": 5, "pitch": 5, "roll": 5, "thrust": 8},
+        tongue={"thrust": 7},
         layer="speech",
         weight=1.0,
     )
@@ -80,7 +81,13 @@ def test_every_part_of_the_face_can_be_commanded(client: TestClient, session: st
     state = merged(client, session)
     assert state["muscles"]["zygomatic_major.L"] == pytest.approx(0.6)
     assert state["jaw"]["pitch"] == pytest.approx(12)
-    assert state["gaze"] == {"yaw": pytest.approx(10), "pitch": pytest.approx(-5)}
+    assert state["gaze"] == {
+        "yaw": pytest.approx(10),
+        "pitch": pytest.approx(-5),
+        "vergence": pytest.approx(6, abs=0.01),
+    }
+    assert state["head"]["thrust"] == pytest.approx(8, abs=0.1)
+    assert state["tongue"] == {"thrust": pytest.approx(7, abs=0.01)}
 
 
 def test_a_command_with_a_time_to_live_lapses(client: TestClient, session: str) -> None:

@@ -1,4 +1,4 @@
-"""The tongue at rest: broad, its edge along the lower teeth, a groove along its middle."""
+"""The tongue: broad, its edge along the lower teeth, a groove along its middle; and put out."""
 
 from __future__ import annotations
 
@@ -25,6 +25,15 @@ GROOVE_DEPTH = 1.5
 GROOVE_WIDTH = 2.2
 PAPILLA = 0.2
 """Height of the bumps that make its surface dull, mm."""
+
+FULL_THRUST = 40.0
+"""How far the tongue is put out in full, mm (AU19)."""
+OUT_NARROWING = 0.2
+"""Share of its width that the part before the teeth loses when it is put out."""
+OUT_FLATTENING = 0.35
+"""Share of its height that it loses."""
+OUT_RISE, OUT_DROOP = 12.5, 5.5
+"""How far it rises to pass over the lower teeth, and how far its tip sinks from there, mm."""
 
 # Linear RGB.
 TIP = np.array([0.52, 0.20, 0.18])
@@ -82,3 +91,25 @@ def _tongue() -> tuple[Mesh, FloatArray]:
     colors = colors * (1 + 0.10 * bumps[:, None] * (1 - under)) * (1 - 0.22 * in_groove)
     triangles = grid_triangles(len(share), AROUND, closed=True)
     return (points, outwards(points, without_slivers(points, triangles))), colors
+
+
+def tongue_out(vertices: FloatArray) -> FloatArray:
+    """Return how far each vertex of a tongue moves as it is put out by `FULL_THRUST`, (v, 3), mm.
+
+    The tongue stretches from its root, narrows, flattens, and lies over the lower teeth and lip.
+    Less thrust moves the vertices by its share of this; the way is a straight line.
+
+    Args:
+        vertices: Of `tongue_part`, in its order, on any person, mm, shape (v, 3).
+    """
+    sections = vertices.reshape(SECTIONS, AROUND, 3)
+    middle = sections.mean(axis=1, keepdims=True)
+    front, root = float(middle[:, 0, 2].max()), float(middle[:, 0, 2].min())
+    share = np.clip((middle[..., 2] - root) / (front - root), 0.0, 1.0)[..., None]
+    offset = sections - middle
+    moved = np.zeros_like(sections)
+    moved[..., 2] = FULL_THRUST * share[..., 0] ** 0.75
+    moved[..., 0] = -OUT_NARROWING * (offset * smoothstep(0.3, 0.8, share))[..., 0]
+    rise = OUT_RISE * smoothstep(0.3, 0.75, share) - OUT_DROOP * smoothstep(0.82, 1.0, share)
+    moved[..., 1] = (rise - OUT_FLATTENING * offset * smoothstep(0.35, 0.8, share))[..., 1]
+    return np.asarray(moved.reshape(-1, 3))

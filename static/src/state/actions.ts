@@ -3,7 +3,7 @@
 import type { ViewName } from '../views';
 
 /** What a slider moves: the name of a group in a command, and a name in it. */
-export type Group = 'action_units' | 'muscles' | 'jaw' | 'gaze' | 'head';
+export type Group = 'action_units' | 'muscles' | 'jaw' | 'gaze' | 'head' | 'tongue';
 
 export interface Actions {
   /** Intensity of an action unit, activation of a muscle, degrees of a pose axis. */

@@ -55,13 +55,35 @@ interface Described {
     region?: string;
     source?: string;
     muscles?: unknown;
+    one_sided?: boolean;
+    description?: string;
   }[];
   limits: Limits;
   emotions: { name: string; recipe?: string; source?: string }[];
   tissue: Record<string, unknown>;
 }
 
-const GROUPS = ['Upper face', 'Lids', 'Lower face', 'Jaw'] as const;
+const GROUPS = [
+  'Upper face',
+  'Lids',
+  'Lower face',
+  'Cheeks',
+  'Jaw',
+  'Tongue',
+  'Gaze',
+  'Head',
+] as const;
+/** Group of each region that a rig names. */
+const REGIONS: Record<string, (typeof GROUPS)[number]> = {
+  upper: 'Upper face',
+  lids: 'Lids',
+  lower: 'Lower face',
+  cheeks: 'Cheeks',
+  jaw: 'Jaw',
+  tongue: 'Tongue',
+  gaze: 'Gaze',
+  head: 'Head',
+};
 const LID_UNITS = [5, 6, 7, 41, 42, 43, 44, 45, 46];
 const JAW_UNITS = [26, 27, 29, 30, 31];
 /** Units of the midline: one muscle, or a jaw, cannot do them on one side. */
@@ -94,8 +116,10 @@ function groupUnits(units: Described['action_units'], muscleNames: string[]): Ac
     groups[GROUPS.indexOf(groupOf(number, unit.region))]!.units.push({
       name: unit.name,
       title: unit.title ?? '',
-      source: unit.source ?? '',
-      paired: Number.isFinite(number) && isPaired(unit.muscles, number, muscleNames),
+      source: [unit.description, unit.source].filter(Boolean).join(' — '),
+      paired:
+        unit.one_sided === true ||
+        (Number.isFinite(number) && isPaired(unit.muscles, number, muscleNames)),
     });
   }
   for (const group of groups) group.units.sort((a, b) => unitNumber(a.name) - unitNumber(b.name));
@@ -110,6 +134,8 @@ function isPaired(muscles: unknown, number: number, muscleNames: string[]): bool
 
 function groupOf(number: number, region: string | undefined): (typeof GROUPS)[number] {
   const named = region?.toLowerCase() ?? '';
+  const known = REGIONS[named];
+  if (known !== undefined) return known;
   if (JAW_UNITS.includes(number) || named.includes('jaw')) return 'Jaw';
   if (LID_UNITS.includes(number) || named.includes('lid') || named.includes('eye')) return 'Lids';
   if (number <= 4 || named.includes('upper') || named.includes('brow')) return 'Upper face';

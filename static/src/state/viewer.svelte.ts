@@ -21,6 +21,7 @@ export class Sliders {
   jaw = $state<Numbers>({});
   gaze = $state<Numbers>({});
   head = $state<Numbers>({});
+  tongue = $state<Numbers>({});
 
   /** Show what a layer holds, e.g. of a session that was open before. */
   take(held: Held): void {
@@ -29,12 +30,13 @@ export class Sliders {
     this.jaw = numbersOnly(held.jaw);
     this.gaze = numbersOnly(held.gaze);
     this.head = numbersOnly(held.head);
+    this.tongue = numbersOnly(held.tongue);
   }
 
   /** All of them, as a command names them. */
   all(): Record<Group, Numbers> {
-    const { action_units, muscles, jaw, gaze, head } = this;
-    return $state.snapshot({ action_units, muscles, jaw, gaze, head });
+    const { action_units, muscles, jaw, gaze, head, tongue } = this;
+    return $state.snapshot({ action_units, muscles, jaw, gaze, head, tongue });
   }
 }
 
