@@ -27,7 +27,7 @@ GRAY = np.array([0.43, 0.43, 0.43])
 """A hair without pigment among others, in shade of its neighbours."""
 SHORN = ("bald", "buzz", "receding")
 """Styles through which light reaches the scalp; under all others, of it:"""
-UNDER_LONG_HAIR = 0.5
+UNDER_LONG_HAIR = 0.4
 DARKEST_BROW = 0.30
 """Brows and lashes of fair people are darker than their hair, towards this share of it."""
 

@@ -146,7 +146,7 @@ if (mapsShown < 1.0) {
 
 /** Hair is no sheet of skin, and the mouth mirrors no studio: little highlight of their own. */
 const GLOSS = /* glsl */ `
-float gloss = lampLight * mix(0.6 + 0.8 * oil, 1.0, mapsShown) * (1.0 - 0.75 * hairCover) * (1.0 - 0.8 * mucosa);
+float gloss = lampLight * mix(0.6 + 0.8 * oil, 1.0, mapsShown) * (1.0 - 0.92 * hairCover) * (1.0 - 0.8 * mucosa);
 material.specularColor *= gloss;
 material.specularColorBlended *= gloss;
 material.specularF90 *= gloss;

@@ -109,10 +109,10 @@ def _outer_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
     ball_under = ball - SINK * smoothstep(0.55, 0.0, along)
     depth = 0.5 * (bed + ball_under + np.sqrt((bed - ball_under) ** 2 + OUTER_FILLET**2))
     depth = depth - 0.5 * OUTER_FILLET * smoothstep(0.45, 0.0, along)
-    to_bed = smoothstep(0.45, 1.1, along + 0.03 * np.abs(height))[..., None]
+    to_bed = smoothstep(0.2, 0.9, along + 0.03 * np.abs(height))[..., None]
     colors = SCLERA_CORNER + (OUTER_BED - SCLERA_CORNER) * to_bed
     # Lids shade it from both sides, and meet where it ends.
-    shade = 0.72 - 0.42 * smoothstep(0.2, 1.0, along + 0 * across)
+    shade = 0.46 - 0.26 * smoothstep(0.2, 1.0, along + 0 * across)
     shade = (shade * (1 - 0.4 * smoothstep(0.0, 0.8, across + 0 * along)))[..., None]
     return _sheet(x, y, depth), (shade * colors).reshape(-1, 3)
 

@@ -71,7 +71,7 @@ PUPIL = np.array([0.0035, 0.003, 0.003])
 SCLERA = np.array([0.43, 0.37, 0.33])
 SCLERA_AGED = np.array([0.41, 0.34, 0.27])
 SCLERA_CORNER = np.array([0.39, 0.245, 0.20])
-SCLERA_MELANIN = np.array([0.17, 0.21, 0.27])
+SCLERA_MELANIN = np.array([0.26, 0.31, 0.37])
 """What the conjunctiva of the darkest skin takes from the sclera's light."""
 SCLERA_NEAR_LIMBUS = np.array([0.40, 0.38, 0.36])
 VESSEL = np.array([0.42, 0.115, 0.09])

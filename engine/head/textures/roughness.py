@@ -26,8 +26,8 @@ def roughness(
     """
     age = np.clip((recipe.age - 30) / 50, 0, 1)
     lip = smoothstep(-0.8, 2.4, zones.lip)
-    broad = 0.535 - 0.115 * zones.oil * (1 - 0.4 * age) + 0.05 * age - 0.015 * recipe.skin
-    broad = broad + 0.055 * zones.beard * recipe.sex + 0.03 * zones.violet
+    broad = 0.535 - 0.115 * zones.oil * (1 - 0.4 * age) + 0.05 * age
+    broad = broad + 0.055 * zones.beard * recipe.sex + 0.07 * zones.violet
     broad = broad + 0.012 * noise(places, 9.0, 81) + 0.012 * noise(places, 4.0, 82)
     broad = broad + (0.40 + 0.05 * age - broad) * lip
     broad = broad + (0.66 - broad) * np.clip(0.8 * zones.scalp, 0, 1)

@@ -193,7 +193,7 @@ def zones_of(surface: Surface, recipe: Recipe) -> Zones:
             + 0.6 * chin + 0.25 * front, 0, 1.2,
         ) * (1 - np.clip(under_eye + upper_lid, 0, 1)),
         oil=np.clip(
-            nose + 0.55 * spot(0, 45, 34, 34) + 0.35 * spot(34, -28, 20, 12) + 0.45 * chin, 0, 1
+            nose + 0.55 * spot(0, 45, 34, 34) + 0.22 * spot(34, -28, 20, 12) + 0.45 * chin, 0, 1
         ),
         front=front,
     )  # fmt: skip
