@@ -101,9 +101,9 @@ skinBend = vForm.x;
 skinThin = vForm.y * (1.0 - hairCover);
 // The lamps are flagged off the neck: it goes into the dark first, and only there into the background.
 float intoLight = saturate((vRest.y - neckFade.x) / (neckFade.y - neckFade.x));
-diffuseColor.a *= smoothstep(0.0, 0.6, intoLight);
+diffuseColor.a *= smoothstep(0.03, 0.78, intoLight);
 float lampLight = smoothstep(0.1, 1.0, intoLight);
-diffuseColor.rgb = mix(vec3(0.022, 0.023, 0.026), diffuseColor.rgb, lampLight * lampLight);
+diffuseColor.rgb = mix(vec3(0.028, 0.029, 0.032), diffuseColor.rgb, lampLight * lampLight);
 `;
 
 /** Pores without maps, by noise; with maps, the maps' relief and a tile of what is finer than they are. */

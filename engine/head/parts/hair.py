@@ -226,8 +226,7 @@ def _combed(
     step = length / pieces
     along = np.linspace(0, 1, pieces + 1)
     profile = along * (1.55 - 0.55 * along)
-    _, normal = scalp.height(roots)
-    place = roots - ROOT_DEPTH * normal
+    place, normal = _planted(scalp, style, roots)
     lines, normals = [place], [normal]
     for k in range(pieces):
         heading = turned(flow(scalp, style, place, normal), normal, turn * (0.6 + 0.6 * along[k]))
@@ -259,11 +258,7 @@ def _hanging(
     )
     # All end at one height, the chin's, a little lower behind.
     hem = HEM - 6 * smoothstep(-20, 40, roots[:, 2]) + noise.normal(0, 4.0, count)
-    place = roots.copy()
-    if style.parting is not None:
-        place[:, 0] += _to_parting(roots, style.parting)
-    height, normal = scalp.height(place)
-    place = place - (height[:, None] + ROOT_DEPTH) * normal
+    place, normal = _planted(scalp, style, roots)
     lines, normals = [place], [normal]
     fallen = np.zeros((count, 1))
     # Its way over the head takes the longer, the higher it begins.
@@ -284,6 +279,15 @@ def _hanging(
         lines.append(place)
         normals.append(normal)
     return _grown(np.stack(lines, axis=1), np.stack(normals, axis=1))
+
+
+def _planted(scalp: Scalp, style: Style, roots: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return where in the skin hair of roots (n, 3) begins, and the scalp's normals there."""
+    place = roots.copy()
+    if style.parting is not None:
+        place[:, 0] += _to_parting(roots, style.parting)
+    height, normal = scalp.height(place)
+    return place - (height[:, None] + ROOT_DEPTH) * normal, normal
 
 
 def _to_parting(roots: FloatArray, parting: float) -> FloatArray:
