@@ -23,13 +23,22 @@ from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .head.textures import head_textures
+from .inverse import Inverse, invert
 from .jaw import JawHinge
 from .kept import keep, read_kept
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import measure_units
 from .mixing import hold_units, unit_key
 from .quality import judge
-from .rig import BUILTIN_RIGS, MODEL_CHOICES, Model, Rig, builtin_rig, rig_from_recipe
+from .rig import (
+    BUILTIN_RIGS,
+    MAX_ACTIVATION,
+    MODEL_CHOICES,
+    Model,
+    Rig,
+    builtin_rig,
+    rig_from_recipe,
+)
 from .simulator import FaceState, Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
@@ -42,6 +51,7 @@ __all__ = [
     "LAYERS",
     "LETTERS",
     "LEVELS",
+    "MAX_ACTIVATION",
     "MODEL_CHOICES",
     "TICKS_PER_SECOND",
     "TISSUE_AGES",
@@ -58,6 +68,7 @@ __all__ = [
     "InvalidNotation",
     "InvalidTrack",
     "InvalidValue",
+    "Inverse",
     "JawHinge",
     "Keyframe",
     "Model",
@@ -81,6 +92,7 @@ __all__ = [
     "format_facs",
     "head_textures",
     "hold_units",
+    "invert",
     "judge",
     "keep",
     "landmarks_68",

@@ -10,7 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import FloatArray
+from .errors import UnknownName
 from .head import Head
+from .head.landmarks import MIDLINE, PAIRED
 
 _RIGHT_JAW = ("W9_2", "W11_1", "W12_1", "W13_1", "C8_6", "C7_7", "C6_8", "C5_9")
 _RIGHT_BROW = ("E4_6", "E4_5", "E4_4", "E4_3", "E4_2")
@@ -40,6 +42,35 @@ LANDMARKS_68: tuple[str, ...] = (
     *_INNER_LIPS,
 )
 """Cage point of each landmark, in order."""
+
+
+def named_point(head: Head, name: str) -> int:
+    """Return the tissue point that a landmark's name stands for.
+
+    Args:
+        head: A built-in head.
+        name: A cage point ("M1_5.L"), one of the 68 by its number ("48"), or an anthropometric
+            landmark ("ch.L", "prn").
+
+    Raises:
+        UnknownName: With the nearest names there are.
+    """
+    if name.isdecimal() and int(name) < len(LANDMARKS_68):
+        return head.point(LANDMARKS_68[int(name)])
+    stem, _, side = name.partition(".")
+    cage = MIDLINE.get(name) or (f"{PAIRED[stem]}.{side}" if stem in PAIRED and side else name)
+    if cage in head.names and cage:
+        return head.point(cage)
+    known = {point for point in head.names if point}
+    known |= {mark for mark, point in MIDLINE.items() if point in known}
+    known |= {
+        f"{mark}.{each}"
+        for mark, point in PAIRED.items()
+        for each in "LR"
+        if f"{point}.{each}" in known
+    }
+    numbers = map(str, range(len(LANDMARKS_68)))
+    raise UnknownName("landmark", name, known.union(numbers) if known else ())
 
 
 def landmarks_68(head: Head, displacements: FloatArray) -> FloatArray:

@@ -135,6 +135,19 @@ class Simulator:
             state.asleep, state.still_ticks = False, 0
         self._faces[face] = state
 
+    def branch(self, face: str, name: str) -> None:
+        """Add a face called `name` that goes on from where `face` stands.
+
+        Raises:
+            UnknownName: If there is no such face.
+            InvalidValue: If the name is taken.
+        """
+        state = self._face(face)
+        copy = FaceState(
+            state.x.copy(), state.v.copy(), state.signals.copy(), state.mixer, state.tick
+        )
+        self.add(name, state=copy)
+
     def remove(self, face: str) -> FaceState:
         """Take a face out and return its state.
 

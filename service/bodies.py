@@ -18,12 +18,14 @@ from pydantic import (
     TypeAdapter,
 )
 
+from engine import MAX_ACTIVATION
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]
 Share = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=1)]
 Seconds = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=3600)]
 Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-180, le=180)]
 Millimetres = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-100, le=100)]
-Activation = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1, le=1)]
+Activation = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1, le=MAX_ACTIVATION)]
 Name = Annotated[str, Field(min_length=1, max_length=64)]
 Letter = Literal["A", "B", "C", "D", "E"]
 LayerName = Literal["idle", "mood", "emotion", "speech", "puppet"]

@@ -1,4 +1,4 @@
-"""The command line: serve, clip, sheet, levels, bench, measure, analyze, warm.
+"""The command line: from `serve` to `warm`.
 
 Every command ends with 0, or with 2 and one clear sentence.
 """
@@ -276,6 +276,26 @@ def analyze(
     except EngineError as error:
         _refuse(f"The expression cannot be analysed: {error}.")
     typer.echo(json.dumps(data, indent=2, allow_nan=False) if as_json else analysis_markdown(data))
+
+
+@app.command()
+def inverse(
+    source: Annotated[
+        Path,
+        typer.Argument(metavar="TARGETS", help="Targets, a JSON file as POST …/inverse takes."),
+    ],
+    rig: Annotated[str, typer.Option(help="Rig to search on, or a person.")] = "standard",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Find the muscles and the jaw that bring landmarks where they are wanted."""
+    from .inverting import InverseRefused, inverse_markdown, invert_file
+
+    try:
+        with _console.status("settling the rig's muscles") as status:
+            data = invert_file(source, rig, lambda share: status.update(f"searching: {share:.0%}"))
+    except InverseRefused as refused:
+        _refuse(str(refused))
+    typer.echo(json.dumps(data, indent=2, allow_nan=False) if as_json else inverse_markdown(data))
 
 
 @app.command()

@@ -9,9 +9,21 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from typing import Any, TypeVar
 
-from engine import Analysis, Cancelled, EngineError, Model, Rig, UnitBasis, analyze, unit_basis
+from engine import (
+    Analysis,
+    Cancelled,
+    EngineError,
+    Inverse,
+    Model,
+    Rig,
+    UnitBasis,
+    analyze,
+    invert,
+    unit_basis,
+)
 
 from .errors import Busy, refused_by_engine
+from .insight_bodies import InverseRequest
 from .runner import Look
 from .shelf import Shelf
 
@@ -55,6 +67,22 @@ class Insight:
                 lambda: analyze(look.snapshot, basis=basis, requested=_requested(look.report))
             )
 
+    async def invert(self, rig: Rig, request: InverseRequest) -> Inverse:
+        """Return the controls that bring landmarks nearest to their targets.
+
+        Raises:
+            Busy: If too much is asked for at once.
+            Refused: If a name or a number of it cannot be used.
+        """
+        async with self._place():
+            loop = asyncio.get_running_loop()
+            try:
+                return await loop.run_in_executor(
+                    self._pool, lambda: inverse_of(rig, request, threads=1, progress=self._go_on)
+                )
+            except EngineError as error:
+                raise refused_by_engine(error) from error
+
     async def _basis(self, rig: Rig, model: Model) -> UnitBasis:
         return await self._bases.get(
             f"{rig.id} {model}",
@@ -81,6 +109,32 @@ class Insight:
     def _go_on(self, _share: float) -> None:
         if self._closing.is_set():
             raise Cancelled("the service stops")
+
+
+def inverse_of(
+    rig: Rig,
+    request: InverseRequest,
+    *,
+    threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Inverse:
+    """Return the engine's answer to a request.
+
+    Raises:
+        EngineError: If a name or a number of it cannot be used.
+    """
+    return invert(
+        rig,
+        request.targets,
+        weights=request.weights,
+        muscles=request.muscles,
+        units=request.action_units,
+        jaw=request.jaw,
+        regularization=request.regularization,
+        iterations=request.iterations,
+        threads=threads,
+        progress=progress,
+    )
 
 
 def _requested(report: Mapping[str, Any]) -> dict[str, float]:

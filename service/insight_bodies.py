@@ -1,8 +1,14 @@
-"""What insight answers: muscles, strain, energy, measured action units."""
+"""What insight is asked and answers: analyses of faces, and the inverse."""
 
 from __future__ import annotations
 
-from pydantic import BaseModel, Field
+from typing import Annotated
+
+from pydantic import BaseModel, Field, StrictBool
+
+from .bodies import Body, Name, Number
+
+Place = Annotated[list[Number | None], Field(min_length=3, max_length=3)]
 
 
 class MuscleLine(BaseModel):
@@ -100,3 +106,51 @@ class AnalysisBody(BaseModel):
     energy: EnergyBody
     regions: dict[str, RegionBody]
     measured: MeasuredBody | None = None
+
+
+class InverseRequest(Body):
+    """Where landmarks are to go, and what may bring them there."""
+
+    targets: dict[Name, Place] = Field(
+        min_length=1,
+        max_length=1024,
+        description="Displacement from rest by landmark, mm; null leaves an axis open.",
+        examples=[{"M1_5.L": [4.0, 9.0, -4.0], "M1_5.R": [0.0, 0.0, None]}],
+    )
+    weights: dict[Name, Number] | None = Field(
+        default=None, description="Of landmarks; 1 where not named."
+    )
+    muscles: Annotated[list[Name], Field(max_length=256)] | None = Field(
+        default=None, description="Those that may act, with or without side; all but air if null."
+    )
+    action_units: Annotated[list[Name], Field(max_length=128)] | None = Field(
+        default=None, description="Units to search in place of muscles: AU12, L12."
+    )
+    jaw: StrictBool = Field(default=True, description="Whether the jaw may move.")
+    regularization: Number | None = Field(
+        default=None,
+        description="Misfit of one landmark, mm, that a muscle's full activation is worth.",
+    )
+    iterations: Annotated[int, Field(ge=1, le=30)] = 12
+
+
+class ReachedBody(BaseModel):
+    """One landmark: where it was wanted, and where it is."""
+
+    name: str
+    target: list[float | None]
+    reached: list[float]
+    residual_mm: float
+
+
+class InverseBody(BaseModel):
+    """The controls that bring landmarks nearest to their targets."""
+
+    rig: str
+    activations: dict[str, float] = Field(description="Of each muscle that acts, to 1.5.")
+    action_units: dict[str, float]
+    jaw: dict[str, float] = Field(description="Degrees of pitch and yaw, mm of thrust.")
+    landmarks: list[ReachedBody]
+    rms_mm: float
+    iterations: int
+    converged: bool

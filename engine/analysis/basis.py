@@ -74,7 +74,7 @@ def unit_basis(
         threads: Faces stepped at a time; None takes one a core.
         progress: Told the share of the work done, 0 to 1; may raise to stop it.
     """
-    names = tuple(rig.action_units)
+    names = _moving_tissue(rig)
     key = content_key(rig.id, model or rig.model, STEPS, SETTLE_SECONDS, ENGINE_HASH)
     arrays = cached_arrays("unit-fields", key, lambda: _settled(rig, model, threads, progress))
     fields, left, right = (arrays[name].astype(np.float64) for name in ("fields", "left", "right"))
@@ -87,7 +87,7 @@ def _settled(
     rig: Rig, model: Model | None, threads: int | None, progress: Progress | None
 ) -> Arrays:
     """Return each unit's field at each step, and of its sides, settled side by side."""
-    names = tuple(rig.action_units)
+    names = _moving_tissue(rig)
     simulator = Simulator(rig, model=model, threads=threads)
     mirror = _mirror(simulator.assembly)
     sided = [name for name in names if _has_sides(rig, name)]
@@ -112,6 +112,15 @@ def _settled(
         half["R"] = half["L"][:, mirror] * np.array([-1.0, 1.0, 1.0])
     both = np.array(ends[: len(STEPS) * many]).reshape(len(STEPS), many, n, 3)
     return {"fields": both, "left": half["L"], "right": half["R"]}
+
+
+def _moving_tissue(rig: Rig) -> tuple[str, ...]:
+    """Return the units that have muscles or move the jaw: not those of gaze, head and tongue."""
+    return tuple(
+        name
+        for name, unit in rig.action_units.items()
+        if unit.muscles or any(place.startswith("jaw.") for place in unit.pose)
+    )
 
 
 def _has_sides(rig: Rig, name: str) -> bool:

@@ -1,4 +1,4 @@
-"""Insight: what a live face does inside, and what it shows beside what it was asked for."""
+"""Insight: what a live face does inside, and which muscles bring landmarks to their targets."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from ..components import Parts
-from ..insight_bodies import AnalysisBody
+from ..insight_bodies import AnalysisBody, InverseBody, InverseRequest
 
 router = APIRouter(prefix="/api", tags=["insight"])
 Measured = Annotated[
@@ -25,3 +25,11 @@ async def session_analysis(
     look = await parts.sessions.look(session)
     analysis = await parts.insight.analyze(look, measured=measured)
     return AnalysisBody.model_validate(analysis.to_json())
+
+
+@router.post("/rigs/{rig}/inverse")
+async def rig_inverse(rig: str, body: InverseRequest, parts: Parts) -> InverseBody:
+    """Return the muscles, or action units, and the jaw that bring landmarks to their targets."""
+    found = await parts.rigs.get(rig)
+    inverse = await parts.insight.invert(found, body)
+    return InverseBody.model_validate(inverse.to_json())

@@ -1,10 +1,11 @@
-"""Insight over HTTP: a live face looked into, and what is refused."""
+"""Insight over HTTP and from the command line: analyses, the inverse, and what is refused."""
 
 from __future__ import annotations
 
 import asyncio
 import json
 import threading
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -99,3 +100,81 @@ def test_the_command_line_refuses_in_one_sentence(arguments: tuple[str, ...]) ->
     result = CliRunner().invoke(app, ["analyze", *arguments])
     assert result.exit_code == 2
     assert "cannot be analysed" in " ".join(result.output.split())
+
+
+def test_the_inverse_answers_what_a_session_can_play(client: TestClient, session: str) -> None:
+    targets = {"M1_5.L": [3.0, 6.0, -3.0], "48": [None, 6.0, None]}
+    answer = client.post("/api/rigs/standard/inverse", json={"targets": targets})
+    assert answer.status_code == 200, answer.text
+    body = answer.json()
+    assert body["rms_mm"] < 1.0
+    assert body["landmarks"][1]["target"] == [None, 6.0, None]
+    controls = {"muscles": body["activations"], "jaw": body["jaw"]}
+    assert client.put(f"/api/sessions/{session}/controls", json=controls).status_code == 200
+
+
+def test_the_inverse_may_search_units(client: TestClient) -> None:
+    body = {"targets": {"48": [-4.0, 8.0, -4.0]}, "action_units": ["R12", "AU6"], "jaw": False}
+    answer = client.post("/api/rigs/standard/inverse", json=body)
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["action_units"]["R12"] > 0.5
+
+
+@pytest.mark.parametrize(
+    ("body", "error"),
+    [
+        ({"targets": {"M1_55.L": [0, 0, 0]}}, "unknown_landmark"),
+        ({"targets": {}}, "invalid_body"),
+        ({}, "invalid_body"),
+        ({"targets": {"prn": [0, 0]}}, "invalid_body"),
+        ({"targets": {"prn": ["far", 0, 0]}}, "invalid_body"),
+        ({"targets": {"prn": [0, 900, 0]}}, "invalid_value"),
+        ({"targets": {"prn": [0, 1, 0]}, "muscles": ["biceps"]}, "unknown_muscle"),
+        ({"targets": {"prn": [0, 1, 0]}, "action_units": ["AU99"]}, "unknown_action_unit"),
+        ({"targets": {"prn": [0, 1, 0]}, "weights": {"ls": 1}}, "unknown_target"),
+        ({"targets": {"prn": [0, 1, 0]}, "iterations": 1000}, "invalid_body"),
+        ({"targets": {"prn": [0, 1, 0]}, "speed": 1}, "invalid_body"),
+    ],
+)
+def test_an_inverse_that_cannot_be_searched_is_refused(
+    client: TestClient, body: dict[str, object], error: str
+) -> None:
+    answer = client.post("/api/rigs/standard/inverse", json=body)
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["error"] == error
+    if error == "unknown_landmark":
+        assert "did you mean" in answer.json()["message"]
+        assert "M1_5.L" in answer.json()["known"]
+
+
+def test_the_inverse_of_a_rig_that_is_not_there(client: TestClient) -> None:
+    answer = client.post("/api/rigs/nobody/inverse", json={"targets": {"prn": [0, 1, 0]}})
+    assert answer.status_code == 404
+
+
+def test_the_command_line_inverts_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "targets.json"
+    path.write_text('{"targets": {"M1_5.L": [3.0, 6.0, -3.0]}, "muscles": ["zygomatic_major"]}')
+    table = CliRunner().invoke(app, ["inverse", str(path)])
+    assert table.exit_code == 0, table.output
+    assert "| zygomatic_major.L |" in table.output
+    data = json.loads(CliRunner().invoke(app, ["inverse", str(path), "--json"]).stdout)
+    assert data["landmarks"][0]["name"] == "M1_5.L"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('{"targets": {"M1_55.L": [0, 0, 0]}}', "did you mean"),
+        ('{"targets": {}}', "holds no targets"),
+        ("[", "not a JSON file"),
+        (None, "cannot be read"),
+    ],
+)
+def test_a_file_without_targets_is_refused(tmp_path: Path, text: str | None, said: str) -> None:
+    path = tmp_path / "targets.json"
+    if text is not None:
+        path.write_text(text)
+    result = CliRunner().invoke(app, ["inverse", str(path)])
+    assert result.exit_code == 2
+    assert said in " ".join(result.output.split())
