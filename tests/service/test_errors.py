@@ -87,7 +87,8 @@ anything = st.recursive(
 )
 KEYS = (
     "action_units facs scale muscles jaw gaze head fade layer weight ttl label intensity scores "
-    "rig model base tissue emotions hold stiffness damping AU12 zygomatic_major.L pitch radius"
+    "rig model base tissue emotions hold stiffness damping AU12 zygomatic_major.L pitch radius "
+    "targets M1_5.L weights palsy side grade relaxed tissue_age region_laxity skin_thickness cheek"
 ).split()
 bodies = anything | st.dictionaries(st.sampled_from(KEYS), anything, max_size=4)
 
@@ -100,7 +101,7 @@ def test_no_body_is_a_failure(
     client: TestClient, shared_session: str, route: tuple[str, str], body: object
 ) -> None:
     method, path = route
-    filled = path.format(session_id=shared_session, muscle="zygomatic_major.L")
+    filled = path.format(session_id=shared_session, muscle="zygomatic_major.L", rig="standard")
     answer = client.request(
         method,
         filled,
