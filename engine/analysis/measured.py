@@ -24,11 +24,13 @@ from .basis import UnitBasis
 
 REFITS = 4
 """Times that each unit's field is taken anew at the intensity found."""
-PARSIMONY = 0.1
-"""Weight of the squared intensity of units that nobody asked for, beside the misfit."""
-ONE_SIDED = 0.002
-"""The same for one side of a unit that is asked for on both: less, for a weak side is likelier than
-a unit that nobody asked for."""
+PARSIMONY = 0.05
+"""Least correlation with what is left over at which a unit that nobody asked for takes part: the
+penalty of its intensity (Tibshirani's lasso), which leaves out what little is gained by. It goes
+with the share of the motion that is not explained, as the scaled lasso's does (Sun and Zhang 2012),
+so that what is well explained is not shrunk."""
+ONE_SIDED = 0.01
+"""The same, in addition, for one side of a unit where nobody asked for the sides to differ."""
 UNASKED_START = 0.5
 """Intensity at which the field of a unit that nobody asked for is first taken."""
 SHOWN = 0.05
@@ -205,22 +207,42 @@ def _fit(
     spare = np.where(np.concatenate([wanted.max(axis=0), *wanted]) > 0.0, 0.0, PARSIMONY)
     # One side alone is an explanation only where both are none.
     spare[len(chosen) :] += np.where(np.tile(wanted[0] == wanted[1], 2), ONE_SIDED, 0.0)
+    residual = 1.0
     for _ in range(REFITS):
         both = [
             (root * basis.per_intensity(unit, float(level))).ravel()
             for unit, level in zip(chosen, even, strict=True)
         ]
         columns = np.stack([*both, *halves], axis=1)
-        penalty = np.diag(np.sqrt(spare) * np.linalg.norm(columns, axis=0))
-        solution, _ = nnls(
-            np.vstack([columns, penalty]), np.concatenate([target, np.zeros(len(spare))])
-        )
+        solution = sparse_nnls(columns, target, spare * residual)
+        residual = float(np.linalg.norm(target - columns @ solution) / size)
         even, left, right = solution.reshape(3, len(chosen))
-    residual = float(np.linalg.norm(target - columns @ solution) / size)
     return {
         side: {basis.units[u]: float(value) for u, value in zip(chosen, even + more, strict=True)}
         for side, more in zip(SIDES, (left, right), strict=True)
     }, residual
+
+
+def sparse_nnls(columns: FloatArray, target: FloatArray, spare: FloatArray) -> FloatArray:
+    """Return x ≥ 0 of least ½ |A x - b|² + |b| Σ s_k |A_k| x_k, shape (k,).
+
+    A linear penalty only shifts Aᵀb, so that the small square problem of the normal equations is
+    one of non-negative least squares again.
+
+    Args:
+        columns: A, shape (p, k); columns of zeros stay at 0.
+        target: b, shape (p,).
+        spare: s, least correlation at which each column takes part, shape (k,).
+    """
+    sizes = np.linalg.norm(columns, axis=0)
+    used = sizes > 1e-9
+    scaled = columns[:, used] / sizes[used]
+    gram = scaled.T @ scaled + 1e-8 * np.eye(int(used.sum()))
+    pull = scaled.T @ target - spare[used] * np.linalg.norm(target)
+    root = np.linalg.cholesky(gram)
+    solution = np.zeros(len(sizes))
+    solution[used] = nnls(root.T, np.linalg.solve(root, pull))[0] / sizes[used]
+    return solution
 
 
 def _merged(

@@ -17,7 +17,7 @@ from engine import (
     unit_basis,
 )
 from engine.analysis.energy import node_energy
-from engine.analysis.measured import opposition
+from engine.analysis.measured import opposition, sparse_nnls
 from engine.analysis.muscles import MILLINEWTON, muscle_forces
 from engine.analysis.strain import Spread, strains_along
 
@@ -149,6 +149,30 @@ def test_what_does_not_fight_is_shown_as_it_was_asked_for(standard_rig, basis, u
     assert max(found.values(), default=0.0) < 0.25  # 1 and 2 raise the lid a little, like 5.
     assert analysis.seen.residual < 0.12
     assert analysis.seen.fights == ()
+
+
+@pytest.mark.parametrize(
+    "unit", ["AU1", "AU4", "AU6", "AU9", "AU12", "AU15", "AU17", "AU20", "AU24"]
+)
+def test_a_unit_is_read_that_nobody_asked_for(standard_rig, basis, unit):
+    snapshot = snapshot_of(standard_rig, action_units={unit: 0.6})
+    found = shown(analyze(snapshot, basis=basis))
+    assert found.pop(unit) == pytest.approx(0.6, abs=0.06)
+    assert max(found.values(), default=0.0) < 0.1
+
+
+def test_sparse_least_squares_meet_their_conditions():
+    rng = np.random.default_rng(2)
+    columns, target = rng.normal(size=(40, 12)), rng.normal(size=40)
+    columns[:, 3] = 0.0
+    spare = np.full(12, 0.1)
+    solution = sparse_nnls(columns, target, spare)
+    assert solution.min() == 0.0 == solution[3]
+    sizes = np.linalg.norm(columns, axis=0)
+    slopes = columns.T @ (columns @ solution - target) + spare * sizes * np.linalg.norm(target)
+    np.testing.assert_allclose(slopes[solution > 0.0], 0.0, atol=1e-5)
+    assert slopes[(solution == 0.0) & (sizes > 0.0)].min() > -1e-5
+    assert (sparse_nnls(columns, target, spare * 4) > 0).sum() < (solution > 0).sum()
 
 
 def test_15_fights_12_and_both_are_reduced(standard_rig):
