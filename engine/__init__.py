@@ -6,6 +6,7 @@ Eurographics 2001). A face is a rig; commands are keyframes; a simulator plays t
 
 from .analysis import Analysis, UnitBasis, analyze, analyze_facs, unit_basis
 from .clip import Clip, clip_of, record, settled, settled_units
+from .combination import Combination
 from .conditions import TISSUE_AGES, plain_changes
 from .emotion import Emotion, blend
 from .errors import (
@@ -18,7 +19,7 @@ from .errors import (
     InvalidValue,
     UnknownName,
 )
-from .facs import LETTERS, ActionUnit, Term, format_facs, parse_facs
+from .facs import LETTERS, REGIONS, ActionUnit, Term, format_facs, parse_facs
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
@@ -27,8 +28,9 @@ from .inverse import Inverse, invert
 from .jaw import JawHinge
 from .kept import keep, read_kept
 from .landmarks import LANDMARKS_68, landmarks_68
-from .measure import measure_units
+from .measure import LANDMARKS, measure_units
 from .mixing import hold_units, unit_key
+from .muscle import AirPressure
 from .quality import judge
 from .rig import (
     BUILTIN_RIGS,
@@ -39,26 +41,33 @@ from .rig import (
     builtin_rig,
     rig_from_recipe,
 )
+from .separability import ALIKE, MOST_ALIKE, Separability, separability
 from .simulator import FaceState, Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
 from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
 
 __all__ = [
+    "ALIKE",
     "BUILTIN_RIGS",
     "ENGINE_HASH",
+    "LANDMARKS",
     "LANDMARKS_68",
     "LAYERS",
     "LETTERS",
     "LEVELS",
     "MAX_ACTIVATION",
     "MODEL_CHOICES",
+    "MOST_ALIKE",
+    "REGIONS",
     "TICKS_PER_SECOND",
     "TISSUE_AGES",
     "ActionUnit",
+    "AirPressure",
     "Analysis",
     "Cancelled",
     "Clip",
+    "Combination",
     "Diverged",
     "Emotion",
     "EngineError",
@@ -76,6 +85,7 @@ __all__ = [
     "Pose",
     "Recipe",
     "Rig",
+    "Separability",
     "Simulator",
     "Snapshot",
     "Term",
@@ -105,6 +115,7 @@ __all__ = [
     "record",
     "rig_from_recipe",
     "rig_to_glb",
+    "separability",
     "settled",
     "settled_units",
     "surface_to_glb",

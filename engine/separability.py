@@ -12,7 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import FloatArray
-from .measure import settle
+from .frame import Pose
+from .gltf.pose import motions
+from .gltf.tongue import TONGUE, posed_tongue
+from .head import Part
+from .measure import Face, settle
 from .rig import Rig
 from .timeline import Keyframe
 from .tissue.layers import sheet_of
@@ -26,7 +30,7 @@ ALIKE: tuple[frozenset[str], ...] = (
     frozenset({"AU41", "AU42", "AU43", "AU45", "AU46"}),
 )
 """Groups of one motion in more or less of it: FACS itself tells them by extent or by time."""
-MOST = 0.9
+MOST_ALIKE = 0.9
 """Similarity that no other pair may reach."""
 
 
@@ -51,7 +55,7 @@ class Separability:
         ]
         return sorted(found, key=lambda pair: -pair[2])
 
-    def too_alike(self, most: float = MOST) -> list[tuple[str, str, float]]:
+    def too_alike(self, most: float = MOST_ALIKE) -> list[tuple[str, str, float]]:
         """Return the pairs whose similarity reaches `most`, but for those within `ALIKE`."""
         return [pair for pair in self.pairs() if pair[2] >= most and not excused(*pair[:2])]
 
@@ -72,7 +76,7 @@ def separability(rig: Rig, units: Sequence[str] | None = None) -> Separability:
     if units is None:
         units = [name for name, unit in rig.action_units.items() if unit.region not in RIGID]
     faces = settle(rig, [Keyframe(action_units=_both_sides(rig, name)) for name in units])
-    return similarity(units, fields_of(rig, [face.displacements for face in faces]))
+    return similarity(units, fields_of(rig, faces))
 
 
 def similarity(units: Sequence[str], fields: FloatArray) -> Separability:
@@ -82,12 +86,36 @@ def similarity(units: Sequence[str], fields: FloatArray) -> Separability:
     return Separability(tuple(units), np.asarray(unit @ unit.T))
 
 
-def fields_of(rig: Rig, displacements: Sequence[FloatArray]) -> FloatArray:
-    """Return displacements as rows in which a point counts by its area, shape (faces, 3 n)."""
+def fields_of(rig: Rig, faces: Sequence[Face]) -> FloatArray:
+    """Return what moves on `faces` as rows in which a point counts by its area, shape (faces, k).
+
+    That is the skin, and the tongue, by which alone AU19 differs from an open mouth.
+    """
     n = rig.head.sheet_count
     seen = np.array([not name.startswith(HIDDEN) for name in rig.head.names[:n]])
-    weight = np.sqrt(sheet_of(rig.head).node_area * seen)
-    return np.stack([(weight[:, None] * u[:n]).ravel() for u in displacements])
+    weight = np.sqrt(sheet_of(rig.head).node_area * seen)[:, None]
+    tongues = [part for part in rig.head.parts if part.name == TONGUE]
+    return np.stack(
+        [
+            np.concatenate(
+                [
+                    (weight * face.displacements[:n]).ravel(),
+                    *(_moved_part(rig, part, face.pose).ravel() for part in tongues),
+                ]
+            )
+            for face in faces
+        ]
+    )
+
+
+def _moved_part(rig: Rig, part: Part, pose: Pose) -> FloatArray:
+    """Return how far each vertex of the tongue has moved, times the root of its area, (v, 3)."""
+    vertices, _ = posed_tongue(part, pose)
+    moved = motions(rig.head, rig.jaw, pose)["jaw"].move(vertices) - part.vertices
+    a, b, c = (part.vertices[part.triangles[:, corner]] for corner in range(3))
+    share = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
+    area = np.bincount(part.triangles.ravel(), np.repeat(share, 3), minlength=len(vertices))
+    return np.asarray(np.sqrt(area)[:, None] * moved)
 
 
 def _both_sides(rig: Rig, name: str) -> dict[str, float]:

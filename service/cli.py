@@ -299,6 +299,44 @@ def inverse(
 
 
 @app.command()
+def units(
+    rig: Annotated[str, typer.Option(help="Rig to describe, or a person.")] = "standard",
+) -> None:
+    """Print every action unit: what is seen, its muscles and their sources, and combinations."""
+    from engine import EngineError, builtin_rig
+
+    from .repertoire import units_markdown
+
+    try:
+        typer.echo(units_markdown(builtin_rig(rig)))
+    except EngineError as error:
+        _refuse(f"The rig cannot be described: {error}.")
+
+
+@app.command()
+def separability(
+    rig: Annotated[str, typer.Option(help="Rig to measure, or a person.")] = "standard",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Measure how alike the action units look, each pair."""
+    from engine import EngineError, builtin_rig
+    from engine import separability as measure_separability
+
+    from .repertoire import separability_markdown
+
+    try:
+        with _console.status("measuring"):
+            found = measure_separability(builtin_rig(rig))
+    except EngineError as error:
+        _refuse(f"The rig cannot be measured: {error}.")
+    if as_json:
+        cosines = [[round(float(value), 4) for value in row] for row in found.cosines]
+        typer.echo(json.dumps({"units": found.units, "cosines": cosines}))
+    else:
+        typer.echo(separability_markdown(found))
+
+
+@app.command()
 def warm() -> None:
     """Compile the kernels and build the rigs into the cache, so that the next start is quick."""
     from engine import BUILTIN_RIGS, Keyframe, Simulator, builtin_rig, surface_to_glb

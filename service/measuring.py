@@ -22,6 +22,7 @@ def measure_rig(rig: Rig, show: Stage) -> dict[str, Any]:
         {
             "action_unit": m.landmark.unit,
             "what": m.landmark.what,
+            "scale": m.landmark.scale,
             "low_mm": m.landmark.low,
             "high_mm": m.landmark.high,
             "measured_mm": round(m.value, 2),
@@ -56,7 +57,7 @@ def measure_rig(rig: Rig, show: Stage) -> dict[str, Any]:
 def markdown(figures: dict[str, Any]) -> str:
     """Return the figures as two Markdown tables."""
     lines = [
-        "| AU | landmark | human motion, mm | measured, mm |",
+        "| AU | landmark | human motion | measured |",
         "|---|---|---|---|",
     ]
     for row in figures["landmarks"]:
@@ -65,7 +66,7 @@ def markdown(figures: dict[str, Any]) -> str:
         )
         lines.append(
             f"| {row['action_unit']} | {row['what']} | {_span(row['low_mm'], row['high_mm'])} "
-            f"| {row['measured_mm']:.1f}{verdict} |"
+            f"{row['scale']} | {row['measured_mm']:.1f} {row['scale']}{verdict} |"
         )
     lines += [
         "",

@@ -107,3 +107,10 @@ def test_the_reader_of_the_stream_reads_a_smile(stream: str, tmp_path: Path) -> 
     lines = done.stdout.splitlines()
     assert lines[0] == f"{len(builtin_rig('standard').head.points)} vertices"
     assert float(lines[-1].split()[-2]) > 4.0
+
+
+def test_the_page_of_action_units_is_what_the_command_prints() -> None:
+    printed = CliRunner().invoke(command_line, ["units"])
+    assert printed.exit_code == 0
+    page = (DOCS / "action-units.md").read_text(encoding="utf-8")
+    assert page == printed.stdout, "risorius units > docs/action-units.md"
