@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from conftest import api_routes, settings_in
+from starlette.testclient import TestClient
 from typer.testing import CliRunner
 
 from engine import builtin_rig, recipe_attributes
@@ -114,3 +116,40 @@ def test_the_page_of_action_units_is_what_the_command_prints() -> None:
     assert printed.exit_code == 0
     page = (DOCS / "action-units.md").read_text(encoding="utf-8")
     assert page == printed.stdout, "risorius units > docs/action-units.md"
+
+
+def sent_in(page: str, path: str) -> list[str]:
+    """Return the bodies that a page's examples post to `path`."""
+    text = (DOCS / page).read_text(encoding="utf-8")
+    return re.findall(rf"curl -X POST localhost:8000{path} .*?-d '(.*?)'", text, re.S)
+
+
+def test_the_examples_about_tissue_make_rigs(client: TestClient) -> None:
+    examples = sent_in("tissue.md", "/api/rigs")
+    examples += re.findall(r"```json\n(.*?)```", (DOCS / "tissue.md").read_text("utf-8"), re.S)
+    assert len(examples) == 4
+    for example in examples:
+        answer = client.post("/api/rigs", json=json.loads(example))
+        assert answer.status_code in (200, 201), (example, answer.text)
+
+
+def test_the_example_of_the_inverse_is_answered(client: TestClient) -> None:
+    (example,) = sent_in("api.md", "/api/rigs/standard/inverse")
+    answer = client.post("/api/rigs/standard/inverse", json=json.loads(example))
+    assert answer.status_code == 200, answer.text
+    api = (DOCS / "api.md").read_text(encoding="utf-8")
+    shown = re.search(r'```json\n(\{"rig": "…", "activations".*?)```', api, re.S)
+    assert shown is not None
+    assert set(json.loads(shown[1])) == set(answer.json())
+
+
+def test_the_example_of_an_analysis_has_the_fields_of_one(client: TestClient, session: str) -> None:
+    api = (DOCS / "api.md").read_text(encoding="utf-8")
+    shown = re.search(r'```json\n(\{"rig": "…", "tick".*?)```', api, re.S)
+    assert shown is not None
+    example = json.loads(shown[1])
+    real = client.get(f"/api/sessions/{session}/analysis?measured=0").json()
+    assert set(example) == {*real, "measured"}
+    assert set(example["muscles"][0]) == set(real["muscles"][0])
+    assert set(example["energy"]) == set(real["energy"])
+    assert set(example["energy"]["terms"]) <= set(real["energy"]["terms"])
