@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..assembly import Assembly
 from ..cache import Arrays, cached_arrays, content_key
 from ..rig import Model, Rig
@@ -32,28 +32,34 @@ class UnitBasis:
     Attributes:
         units: Their names.
         fields: Displacement of the sheet at each of `STEPS`, mm, shape (steps, units, n, 3).
-        left, right: The same of one side alone at full intensity, shape (units, n, 3); zeros for
-            units that have no sides.
+        left, right: The same of one side alone; zeros for units that have no sides.
+        one_sided: Which units act on one side only (AU46), the left one in `fields`, (units,).
     """
 
     units: tuple[str, ...]
     fields: FloatArray
     left: FloatArray
     right: FloatArray
+    one_sided: BoolArray
 
-    def per_intensity(self, unit: int, intensity: float) -> FloatArray:
-        """Return a unit's field at an intensity over that intensity, mm, shape (n, 3).
 
-        Beyond the steps it goes on as it is at the nearest one.
-        """
-        shares = [field / step for field, step in zip(self.fields[:, unit], STEPS, strict=True)]
-        if intensity <= STEPS[0]:
-            return np.asarray(shares[0])
-        for index in range(1, len(STEPS)):
-            if intensity <= STEPS[index]:
-                share = (intensity - STEPS[index - 1]) / (STEPS[index] - STEPS[index - 1])
-                return np.asarray(shares[index - 1] + share * (shares[index] - shares[index - 1]))
-        return np.asarray(shares[-1])
+def per_intensity(steps: FloatArray, intensity: float) -> FloatArray:
+    """Return a unit's field at an intensity over that intensity, mm, shape (n, 3).
+
+    Beyond the steps it goes on as it is at the nearest one.
+
+    Args:
+        steps: Its field at each of `STEPS`, mm, shape (steps, n, 3).
+        intensity: 0..1.
+    """
+    shares = [field / step for field, step in zip(steps, STEPS, strict=True)]
+    if intensity <= STEPS[0]:
+        return np.asarray(shares[0])
+    for index in range(1, len(STEPS)):
+        if intensity <= STEPS[index]:
+            share = (intensity - STEPS[index - 1]) / (STEPS[index] - STEPS[index - 1])
+            return np.asarray(shares[index - 1] + share * (shares[index] - shares[index - 1]))
+    return np.asarray(shares[-1])
 
 
 def unit_basis(
@@ -65,8 +71,8 @@ def unit_basis(
 ) -> UnitBasis:
     """Return the fields of every unit of `rig` that moves its tissue.
 
-    Kept on disk under the rig's id: it takes as long as some sixty faces take to settle. Where the
-    two sides of the face are alike, the right one is the left one's mirror image.
+    Kept on disk under the rig's id: it takes as long as some hundred faces take to settle. Where
+    the two sides of the face are alike, the right one is the left one's mirror image.
 
     Args:
         rig: Whose units.
@@ -80,7 +86,8 @@ def unit_basis(
     fields, left, right = (arrays[name].astype(np.float64) for name in ("fields", "left", "right"))
     moving = np.linalg.norm(fields[-1], axis=2).max(axis=1) > STILL_MM
     units = tuple(name for name, moves in zip(names, moving, strict=True) if moves)
-    return UnitBasis(units, fields[:, moving], left[moving], right[moving])
+    one_sided = np.array([rig.action_units[name].one_sided for name in units], dtype=bool)
+    return UnitBasis(units, fields[:, moving], left[:, moving], right[:, moving], one_sided)
 
 
 def _settled(
@@ -93,7 +100,12 @@ def _settled(
     sided = [name for name in names if _has_sides(rig, name)]
     sides = "L" if mirror is not None else "LR"
     faces = [(name, step) for step in STEPS for name in names]
-    faces += [(f"{side}{name.removeprefix('AU')}", 1.0) for side in sides for name in sided]
+    faces += [
+        (f"{side}{name.removeprefix('AU')}", step)
+        for step in STEPS
+        for side in sides
+        for name in sided
+    ]
     for key, step in faces:
         face = f"{key} {step}"
         simulator.add(face)
@@ -105,11 +117,11 @@ def _settled(
             progress((tick + 1) / ticks)
     n, many = rig.head.sheet_count, len(names)
     ends = [simulator.frame(f"{key} {step}").displacements[:n] for key, step in faces]
-    half = {side: np.zeros((many, n, 3)) for side in "LR"}
-    for (key, _), end in list(zip(faces, ends, strict=True))[len(STEPS) * many :]:
-        half[key[0]][names.index(f"AU{key[1:]}")] = end
+    half = {side: np.zeros((len(STEPS), many, n, 3)) for side in "LR"}
+    for (key, step), end in list(zip(faces, ends, strict=True))[len(STEPS) * many :]:
+        half[key[0]][STEPS.index(step), names.index(f"AU{key[1:]}")] = end
     if mirror is not None:
-        half["R"] = half["L"][:, mirror] * np.array([-1.0, 1.0, 1.0])
+        half["R"] = half["L"][:, :, mirror] * np.array([-1.0, 1.0, 1.0])
     both = np.array(ends[: len(STEPS) * many]).reshape(len(STEPS), many, n, 3)
     return {"fields": both, "left": half["L"], "right": half["R"]}
 

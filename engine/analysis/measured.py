@@ -20,7 +20,7 @@ from ..landmarks import LANDMARKS_68
 from ..muscle import LidMuscle
 from ..rig import Rig
 from ..tissue.layers import Sheet
-from .basis import UnitBasis
+from .basis import UnitBasis, per_intensity
 
 REFITS = 4
 """Times that each unit's field is taken anew at the intensity found."""
@@ -149,6 +149,8 @@ def _asked(rig: Rig, requested: Mapping[str, float], side: str) -> dict[str, flo
     asked: dict[str, float] = {}
     for key, value in requested.items():
         unit, its_side = rig.resolve_unit(key)
+        if unit.one_sided and not its_side:
+            its_side = "L"
         if its_side in ("", side) and value > 0.0:
             asked[unit.name] = max(value, asked.get(unit.name, 0.0))
     return asked
@@ -202,21 +204,26 @@ def _fit(
     if size == 0.0:
         return {side: dict.fromkeys((basis.units[u] for u in chosen), 0.0) for side in SIDES}, 0.0
     wanted = np.array([[asked[side].get(basis.units[u], 0.0) for u in chosen] for side in SIDES])
+    # Intensities of both sides, and of more on the left and on the right.
     even = np.where(wanted.any(axis=0), wanted.min(axis=0), UNASKED_START)
-    halves = [(root * side[u]).ravel() for side in (basis.left, basis.right) for u in chosen]
-    spare = np.where(np.concatenate([wanted.max(axis=0), *wanted]) > 0.0, 0.0, PARSIMONY)
+    levels = np.stack([even, *np.where(wanted > 0.0, wanted, UNASKED_START)])
+    spare = np.where(np.stack([wanted.max(axis=0), *wanted]) > 0.0, 0.0, PARSIMONY)
     # One side alone is an explanation only where both are none.
-    spare[len(chosen) :] += np.where(np.tile(wanted[0] == wanted[1], 2), ONE_SIDED, 0.0)
+    spare[1:] += np.where(wanted[0] == wanted[1], ONE_SIDED, 0.0)
+    # What acts on one side only is never on both.
+    fields = (basis.fields * ~basis.one_sided[:, None, None], basis.left, basis.right)
     residual = 1.0
     for _ in range(REFITS):
-        both = [
-            (root * basis.per_intensity(unit, float(level))).ravel()
-            for unit, level in zip(chosen, even, strict=True)
+        columns = [
+            (root * per_intensity(field[:, unit], float(level))).ravel()
+            for field, row in zip(fields, levels, strict=True)
+            for unit, level in zip(chosen, row, strict=True)
         ]
-        columns = np.stack([*both, *halves], axis=1)
-        solution = sparse_nnls(columns, target, spare * residual)
-        residual = float(np.linalg.norm(target - columns @ solution) / size)
-        even, left, right = solution.reshape(3, len(chosen))
+        matrix = np.stack(columns, axis=1)
+        solution = sparse_nnls(matrix, target, spare.ravel() * residual)
+        residual = float(np.linalg.norm(target - matrix @ solution) / size)
+        levels = solution.reshape(3, len(chosen))
+    even, left, right = levels
     return {
         side: {basis.units[u]: float(value) for u, value in zip(chosen, even + more, strict=True)}
         for side, more in zip(SIDES, (left, right), strict=True)

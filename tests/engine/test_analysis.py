@@ -161,6 +161,14 @@ def test_a_unit_is_read_that_nobody_asked_for(standard_rig, basis, unit):
     assert max(found.values(), default=0.0) < 0.1
 
 
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_a_wink_is_on_one_side(standard_rig, basis, side):
+    units = {f"{side}46": 0.8}
+    snapshot = snapshot_of(standard_rig, action_units=units)
+    found = shown(analyze(snapshot, basis=basis, requested=units))
+    assert found == {f"{side}46": pytest.approx(0.8, abs=0.05)}
+
+
 def test_sparse_least_squares_meet_their_conditions():
     rng = np.random.default_rng(2)
     columns, target = rng.normal(size=(40, 12)), rng.normal(size=40)
