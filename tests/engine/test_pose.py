@@ -65,3 +65,15 @@ def test_one_sided_units_go_to_their_side(standard_rig):
     assert yaws[0] == yaws[1] == -yaws[2] > 5.0
     assert "left" in standard_rig.check(Keyframe(action_units={"AU30": 1.0}))[0]
     assert standard_rig.check(Keyframe(action_units={"R30": 1.0})) == []
+
+
+def test_lids_go_with_the_eyes_unless_they_are_shut(standard_rig):
+    from engine.measure import LOWER_LID, UPPER_LID, settle
+
+    units = ({"AU64": 1.0}, {"AU63": 1.0}, {"AU43": 1.0}, {"AU43": 1.0, "AU64": 1.0})
+    down, up, shut, shut_down = settle(standard_rig, [Keyframe(action_units=u) for u in units])
+    assert down.u(UPPER_LID)[1] < -2.5
+    assert down.u(LOWER_LID)[1] < -0.5
+    assert down.gap(UPPER_LID, LOWER_LID) > 2.0
+    assert up.u(UPPER_LID)[1] > 1.0
+    assert shut_down.displacements == pytest.approx(shut.displacements, abs=0.05)
