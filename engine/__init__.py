@@ -45,7 +45,7 @@ from .separability import ALIKE, MOST_ALIKE, Separability, separability
 from .simulator import FaceState, Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
-from .timeline import LAYERS, TICKS_PER_SECOND, Keyframe, Timeline
+from .timeline import LAYERS, LONGEST_ONSET, TICKS_PER_SECOND, Keyframe, Timeline
 
 __all__ = [
     "ALIKE",
@@ -56,6 +56,7 @@ __all__ = [
     "LAYERS",
     "LETTERS",
     "LEVELS",
+    "LONGEST_ONSET",
     "MAX_ACTIVATION",
     "MODEL_CHOICES",
     "MOST_ALIKE",

@@ -36,6 +36,8 @@ class ActionUnit:
         source: Where the recipe comes from.
         description: What is seen, after the FACS manual, in our words.
         sources: Where each muscle of the recipe comes from, by muscle.
+        onset, offset: Seconds from rest to full and back, where a command gives no time.
+        timing: Where these two come from.
     """
 
     name: str
@@ -48,6 +50,9 @@ class ActionUnit:
     source: str = ""
     description: str = ""
     sources: Mapping[str, str] = field(default_factory=dict)
+    onset: float = 0.35
+    offset: float = 0.5
+    timing: str = ""
 
     @property
     def jaw(self) -> float:

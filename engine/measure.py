@@ -131,7 +131,7 @@ LANDMARKS: tuple[Landmark, ...] = (
     Landmark("AU6", "cheek up", 3, 5, lambda f: float(f.u(CHEEK)[1])),
     Landmark("AU6", "fissure narrows", 2, 3, lambda f: f.narrowing(), False),
     Landmark("AU7", "lower lid up", 1.5, 2.5, lambda f: float(f.u(LOWER_LID)[1])),
-    Landmark("AU9", "ala up", 3, 5, lambda f: float(f.u(ALA)[1])),
+    Landmark("AU9", "ala up", 3, 5, lambda f: float(f.u(ALA)[1]), full=4.6),
     Landmark("AU10", "upper lip up", 5, 6, lambda f: float(f.u(UPPER_LIP)[1])),
     Landmark("AU11", "furrow up and out", 2, 4, lambda f: f.towards(FURROW, 0.5, 0.8, 0.0)),
     Landmark(

@@ -66,13 +66,19 @@ class Ramp:
         """Return the tick at which the last entry arrives."""
         return int((self.begin + self.length).max())
 
-    def move(self, target: FloatArray, tick: int, length: int) -> None:
-        """Send the entries whose target changes on a new way from where they are."""
+    def move(self, target: FloatArray, tick: int, length: FloatArray) -> None:
+        """Send the entries whose target changes on a new way from where they are.
+
+        Args:
+            target: New values, shape (channels,).
+            tick: Now.
+            length: Ticks that each entry takes, shape (channels,).
+        """
         changed = target != self.target
         self.start[changed] = self.at(tick)[changed]
         self.target[changed] = target[changed]
         self.begin[changed] = tick
-        self.length[changed] = length
+        self.length[changed] = length[changed]
 
 
 class Mixer:
@@ -95,6 +101,7 @@ class Mixer:
         """
         self._expire(tick)
         held = self._held[keyframe.layer]
+        before = dict(held.action_units)
         if keyframe.replace:
             held.action_units, held.muscles, held.axes, held.emotion = {}, {}, {}, None
         if keyframe.emotion is not None:
@@ -107,10 +114,11 @@ class Mixer:
                 _merge(held.axes, {(group, axis): value})
         held.weight = keyframe.weight
         held.expires = None
+        lengths = self._lengths(before, held.action_units, keyframe)
         if keyframe.hold is not None:
-            held.expires = tick + ticks(keyframe.fade) + ticks(keyframe.hold)
+            held.expires = tick + int(lengths.max()) + ticks(keyframe.hold)
             held.fade_out = ticks(keyframe.fade_out)
-        self._retarget(keyframe.layer, tick, ticks(keyframe.fade))
+        self._retarget(keyframe.layer, tick, lengths)
 
     def at(self, tick: int) -> FloatArray:
         """Return the merged command at `tick`, shape (channels,)."""
@@ -146,7 +154,7 @@ class Mixer:
         moved = copy.deepcopy(self)
         moved._rig = rig
         for layer in LAYERS:
-            moved._retarget(layer, tick, 0)
+            moved._retarget(layer, tick, moved._all(0))
         return moved
 
     def __deepcopy__(self, memo: dict[int, object]) -> Mixer:
@@ -167,10 +175,44 @@ class Mixer:
         for layer, held in self._held.items():
             if held.expires is not None and tick >= held.expires:
                 self._held[layer] = Held()
-                self._retarget(layer, tick, held.fade_out)
+                self._retarget(layer, tick, self._all(held.fade_out))
 
-    def _retarget(self, layer: str, tick: int, fade: int) -> None:
-        """Point the layer's ramps at what it now holds."""
+    def _all(self, length: int) -> FloatArray:
+        """Return the same number of ticks for every channel, shape (channels,)."""
+        return np.full(self._rig.channels.count, float(length))
+
+    def _lengths(
+        self, before: Mapping[str, float], after: Mapping[str, float], keyframe: Keyframe
+    ) -> FloatArray:
+        """Return the ticks that each channel takes from one set of units to another, (channels,).
+
+        With no fade, a channel takes the onset of the unit that moves it most as it rises, and
+        the offset as it falls; what the command names by itself is there at once.
+        """
+        if keyframe.fade is not None:
+            return self._all(ticks(keyframe.fade))
+        channels = self._rig.channels
+        lengths, most = self._all(0), np.zeros(channels.count)
+        for key in sorted({*before, *after}):
+            change = after.get(key, 0.0) - before.get(key, 0.0)
+            if change == 0.0:
+                continue
+            unit, _ = self._rig.resolve_unit(key)
+            moved = np.abs(self._rig.contraction({key: abs(change)}))
+            leads = moved > most
+            lengths[leads] = ticks(unit.onset if change > 0.0 else unit.offset)
+            most = np.maximum(most, moved)
+        # What units move only together, by a rule, goes with the slowest of them.
+        lengths[most == 0.0] = lengths.max()
+        for name in keyframe.muscles:
+            lengths[channels.muscle_names.index(name)] = 0.0
+        for group in GROUPS:
+            for axis in getattr(keyframe, group):
+                lengths[channels.index(group, axis)] = 0.0
+        return lengths
+
+    def _retarget(self, layer: str, tick: int, fade: FloatArray) -> None:
+        """Point the layer's ramps at what it now holds, each channel over its `fade`, ticks."""
         held, values, shares = self._held[layer], self._values[layer], self._shares[layer]
         target, claimed = self._vector(held)
         # A channel that nobody claimed takes its value at once and fades in by its share; one

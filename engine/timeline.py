@@ -16,6 +16,8 @@ LAYERS = ("idle", "mood", "emotion", "speech", "puppet")
 """Layers from the lowest to the highest; a higher one overrides a lower, muscle by muscle."""
 TICKS_PER_SECOND = 60
 MAX_SECONDS = 3600.0
+LONGEST_ONSET = 1.0
+"""No action unit takes longer than this from rest to full, or back, in its own time, s."""
 SECONDS_AFTER_LAST = 1.0
 """How long a timeline without a duration goes on after its last keyframe has played."""
 
@@ -36,7 +38,8 @@ class Keyframe:
         head: "yaw", "pitch" and "roll", degrees: left, up, to the left shoulder; "thrust", mm.
         tongue: "thrust", mm out of the mouth.
         emotion: Label and intensity; it replaces the layer's action units.
-        fade: Seconds over which the face moves there.
+        fade: Seconds over which the face moves there; None gives each action unit its own onset or
+            offset, and everything else none.
         hold: Seconds to stay before the whole layer lets go; None stays.
         fade_out: Seconds over which it lets go after `hold`.
         weight: How much of the lower layers is overridden, 0..1.
@@ -52,7 +55,7 @@ class Keyframe:
     head: Mapping[str, float] = field(default_factory=dict)
     tongue: Mapping[str, float] = field(default_factory=dict)
     emotion: tuple[str, float] | None = None
-    fade: float = 0.0
+    fade: float | None = 0.0
     hold: float | None = None
     fade_out: float = 0.4
     weight: float = 1.0
@@ -136,7 +139,7 @@ def ticks(seconds: float) -> int:
 
 
 _MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head", "tongue")
-_NUMBERS = ("time", "fade", "fade_out", "weight")
+_NUMBERS = ("time", "fade_out", "weight")
 _KNOWN = {f.name for f in fields(Keyframe)} | {"facs"}
 
 
@@ -156,6 +159,8 @@ def _keyframe(index: int, entry: object) -> Keyframe:
     for name in _NUMBERS:
         if name in entry:
             values[name] = _number(index, name, entry[name])
+    if "fade" in entry:
+        values["fade"] = None if entry["fade"] is None else _number(index, "fade", entry["fade"])
     if entry.get("hold") is not None:
         values["hold"] = _number(index, "hold", entry["hold"])
     layer = entry.get("layer", "puppet" if "emotion" not in entry else "emotion")
@@ -216,4 +221,5 @@ def _finite(place: str, value: object) -> float:
 def _end(keyframe: Keyframe) -> float:
     """Return when a keyframe has played, its fade-out included if it lets go [s]."""
     lets_go = 0.0 if keyframe.hold is None else keyframe.hold + keyframe.fade_out
-    return keyframe.time + keyframe.fade + lets_go
+    fade = LONGEST_ONSET if keyframe.fade is None else keyframe.fade
+    return keyframe.time + fade + lets_go

@@ -117,7 +117,10 @@ class Controls(Body):
     tongue: Tongue | None = None
     arkit: dict[Name, Number] | None = Field(default=None, max_length=128)
     visemes: dict[Name, Number] | None = Field(default=None, max_length=64)
-    fade: Seconds = Field(default=0.0, description="Seconds until the commands are reached.")
+    fade: Seconds | None = Field(
+        default=0.0,
+        description="Seconds until the commands are reached; null gives each unit its own.",
+    )
     layer: LayerName = "puppet"
     weight: Share = 1.0
     ttl: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = Field(
@@ -138,7 +141,10 @@ class EmotionCommand(Body):
     label: Name | None = None
     intensity: Share = 1.0
     scores: Annotated[list[Score], Field(min_length=1, max_length=64)] | None = None
-    fade_in: Seconds = 0.2
+    fade_in: Seconds | None = Field(
+        default=None,
+        description="Seconds until it is reached; without it each unit takes its own.",
+    )
     hold: Seconds | None = Field(
         default=None, description="Seconds it is held; without it, it stays."
     )

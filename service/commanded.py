@@ -47,6 +47,7 @@ class _Layer:
     fade_out: float = 0.0
 
     def apply(self, keyframe: Keyframe, recipe: Mapping[str, float] | None, rig: Rig) -> None:
+        before = dict(self.units)
         if keyframe.replace or recipe is not None:
             self.units = {}
         hold_units(rig, self.units, recipe or {})
@@ -54,18 +55,32 @@ class _Layer:
         self.weight = keyframe.weight
         self.expires = None
         if keyframe.hold is not None:
-            self.expires = keyframe.time + keyframe.fade + keyframe.hold
+            fade = max(self._fades(keyframe, before, rig).values(), default=0.0)
+            self.expires = keyframe.time + fade + keyframe.hold
             self.fade_out = keyframe.fade_out
-        self._retarget(keyframe.time, keyframe.fade)
+        self._retarget(keyframe.time, self._fades(keyframe, before, rig))
 
     def let_go(self, time: float) -> None:
         if self.expires is not None and time >= self.expires:
             self.units = {}
-            self._retarget(self.expires, self.fade_out)
+            self._retarget(self.expires, dict.fromkeys(self.shares, self.fade_out))
             self.expires = None
 
-    def _retarget(self, time: float, fade: float) -> None:
+    def _fades(self, keyframe: Keyframe, before: Mapping[str, float], rig: Rig) -> dict[str, float]:
+        """Return the seconds that each unit takes: the command's, or its own onset or offset."""
+        keys = {*self.units, *self.values}
+        if keyframe.fade is not None:
+            return dict.fromkeys(keys, keyframe.fade)
+        fades = {}
+        for key in keys:
+            unit, _ = rig.resolve_unit(key)
+            rises = self.units.get(key, 0.0) > before.get(key, 0.0)
+            fades[key] = unit.onset if rises else unit.offset
+        return fades
+
+    def _retarget(self, time: float, fades: Mapping[str, float]) -> None:
         for key in {*self.units, *self.values}:
+            fade = fades.get(key, 0.0)
             value = self.values.setdefault(key, _Ramp())
             share = self.shares.setdefault(key, _Ramp())
             if key in self.units:

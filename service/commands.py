@@ -246,7 +246,8 @@ def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig) -> Keyframe:
     """Return `keyframe` with the emotion of `body`; fields that `body` gives itself win."""
     command = body.emotion
     if isinstance(command, str):
-        command = EmotionCommand(label=command, fade_in=body.fade, hold=body.ttl)
+        fade = body.fade if "fade" in body.model_fields_set else None
+        command = EmotionCommand(label=command, fade_in=fade, hold=body.ttl)
     played = play_emotion(command or EmotionCommand(), rig).keyframe
     given = body.model_fields_set
     return replace(

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import structlog
 
-from engine import Clip, Frame, Keyframe, Model, Rig, Simulator, Timeline, record
+from engine import LONGEST_ONSET, Clip, Frame, Keyframe, Model, Rig, Simulator, Timeline, record
 
 from .errors import NotFound
 from .mailbox import Mailbox
@@ -318,7 +318,8 @@ class EmbeddedRunner:
         tick = group.simulator.apply(session, keyframe)
         group.awake.add(session)
         if keyframe.hold is not None:
-            left = math.ceil((keyframe.fade + keyframe.hold) * Simulator.TICKS_PER_SECOND) + 2
+            fade = LONGEST_ONSET if keyframe.fade is None else keyframe.fade
+            left = math.ceil((fade + keyframe.hold) * Simulator.TICKS_PER_SECOND) + 2
             group.waiting[session] = max(left, group.waiting.get(session, 0))
         return tick
 

@@ -72,6 +72,11 @@ def _unit(rig: Rig, unit: ActionUnit) -> list[str]:
         lines += [f"On living faces: {', '.join(figures)}. {_sentence(unit.source)}", ""]
     else:
         lines += [_sentence(unit.source), ""]
+    lines += [
+        f"In its own time it takes {unit.onset:g} s to come and {unit.offset:g} s to go: "
+        f"{unit.timing}.",
+        "",
+    ]
     lines += ["| moves | weight | source |", "|---|---|---|"]
     air = {
         muscle.name.partition(".")[0] for muscle in rig.muscles if isinstance(muscle, AirPressure)

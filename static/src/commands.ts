@@ -6,7 +6,8 @@ import type { Group } from './state/actions';
 import type { ViewerState } from './state/viewer.svelte';
 import { Throttle } from './throttle';
 
-const EMOTION_FADE_SECONDS = 0.25;
+/** Each action unit of an emotion takes the time that it takes on living faces. */
+const OWN_TIME = null;
 const RELEASE_FADE_SECONDS = 0.2;
 /** After a control was moved here, what the service reports of it is older than the hand for this long. */
 const HANDS_OFF_MS = 700;
@@ -51,7 +52,7 @@ export class Commands {
 
   playEmotion(label: string, intensity: number): void {
     this.touch();
-    const fade = label === this.viewer.emotion ? 0 : EMOTION_FADE_SECONDS;
+    const fade = label === this.viewer.emotion ? 0 : OWN_TIME;
     this.viewer.emotion = label;
     this.send(emotionCommand(label, intensity, fade));
   }

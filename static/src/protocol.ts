@@ -219,7 +219,7 @@ export function replaceCommand(controls: Controls): string {
   return JSON.stringify({ type: 'controls', replace: true, ...controls });
 }
 
-export function emotionCommand(label: string, intensity: number, fadeIn: number): string {
+export function emotionCommand(label: string, intensity: number, fadeIn: number | null): string {
   return JSON.stringify({ type: 'emotion', label, intensity, fade_in: fadeIn });
 }
 

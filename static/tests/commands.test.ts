@@ -70,7 +70,7 @@ describe('Commands', () => {
   it('fades an emotion in, but follows its intensity at once', () => {
     commands.playEmotion('anger', 1);
     commands.playEmotion('anger', 0.5);
-    expect(sent.map(({ fade_in }) => fade_in)).toEqual([0.25, 0]);
+    expect(sent.map(({ fade_in }) => fade_in)).toEqual([null, 0]);
     commands.stopEmotion();
     expect(sent.at(-1)).toMatchObject({ layer: 'emotion', replace: true });
     expect(viewer.emotion).toBe('');

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import Keyframe, Rig, Simulator
+from engine import LONGEST_ONSET, Keyframe, Rig, Simulator
 from engine.mixing import Mixer
 from engine.simulator import STILL_TICKS
 
@@ -123,3 +123,34 @@ def test_a_jaw_axis_at_zero_lets_go_of_what_lies_under_it(standard_rig):
     mixer.apply(Keyframe(jaw={"pitch": 0.0}), 3)
     assert mixer.at(4)[pitch] > 10.0
     assert "puppet" not in mixer.report(4)["layers"]
+
+
+def test_without_a_fade_each_unit_takes_its_own_time(standard_rig):
+    mixer = Mixer(standard_rig)
+    smile, blink = (standard_rig.action_units[name] for name in ("AU12", "AU45"))
+    assert 0.3 <= smile.onset <= 0.7
+    assert blink.onset == pytest.approx(0.1, abs=0.03)
+    assert blink.offset > blink.onset
+    both = {"AU12": 1.0, "AU45": 1.0}
+    mixer.apply(Keyframe(action_units=both, muscles={"mentalis.L": 0.5}, fade=None), 0)
+    full = standard_rig.contraction(both)
+    names = standard_rig.muscle_names
+    zygomatic, lid, chin = (
+        names.index(name)
+        for name in ("zygomatic_major.L", "orbicularis_oculi_pretarsal.L", "mentalis.L")
+    )
+    early = mixer.at(round(60 * blink.onset))
+    assert early[lid] == pytest.approx(full[lid])
+    assert early[zygomatic] < 0.3 * full[zygomatic]
+    assert mixer.at(0)[chin] == 0.5
+    mixer.apply(Keyframe(action_units={"AU45": 0.0}, fade=None), 60)
+    assert 0.0 < mixer.at(60 + round(60 * blink.onset))[lid] < full[lid]
+    assert mixer.at(60 + round(60 * blink.offset))[lid] == 0.0
+    assert mixer.at(70)[zygomatic] == pytest.approx(full[zygomatic])
+
+
+def test_every_unit_says_how_long_it_takes(standard_rig):
+    for unit in standard_rig.action_units.values():
+        assert 0.0 < unit.onset <= LONGEST_ONSET
+        assert 0.0 < unit.offset <= LONGEST_ONSET
+        assert unit.timing
