@@ -90,6 +90,7 @@ def measure_people(show: Stage) -> dict[str, dict[str, list[float | bool]]]:
         figures[name] = {
             f"{m.landmark.unit} {m.landmark.what}": [round(m.value, 2), m.direction_right]
             for m in measure_units(builtin_rig(name))
+            if m.landmark.scale == "mm"  # Eyes and head turn alike on everybody.
         }
     return figures
 
