@@ -20,6 +20,7 @@ from .errors import (
     UnknownName,
 )
 from .facs import LETTERS, REGIONS, ActionUnit, Term, format_facs, parse_facs
+from .flesh import Flesh, examine, path_dependence, random_mixes
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
@@ -73,6 +74,7 @@ __all__ = [
     "Emotion",
     "EngineError",
     "FaceState",
+    "Flesh",
     "Frame",
     "InvalidHead",
     "InvalidNotation",
@@ -99,6 +101,7 @@ __all__ = [
     "builtin_rig",
     "clip_of",
     "clip_to_glb",
+    "examine",
     "face_to_glb",
     "format_facs",
     "head_textures",
@@ -109,8 +112,10 @@ __all__ = [
     "landmarks_68",
     "measure_units",
     "parse_facs",
+    "path_dependence",
     "people",
     "plain_changes",
+    "random_mixes",
     "read_kept",
     "recipe_attributes",
     "record",

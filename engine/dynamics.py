@@ -38,6 +38,10 @@ def kernel(function: F) -> F:
     return cast(F, compiled)
 
 
+LEAST_VOLUME, MOST_VOLUME = -1.0, 1.5
+"""Shares of its volume beyond which an element pulls no harder: torn open or turned over by a jump
+of the jaw, it would else be stiffer than its mass allows."""
+
 TABLEAUS: dict[str, FloatArray] = {
     "rk2": np.array([[0.5, 0.0], [0.0, 1.0]]),
     "heun": np.array([[1.0, 0.5], [0.0, 0.5]]),
@@ -91,16 +95,23 @@ class Anchors(NamedTuple):
     skull_gap: float
 
 
-class Barrier(NamedTuple):
-    """Layer order: a layer keeps a share of its rest gap to the next along the normal.
+class Prisms(NamedTuple):
+    """Elements between two layers that keep their volume and are never turned inside out.
 
     Attributes:
-        stiffness: Per node of the epidermis, shape (n,); zeros switch the term off.
-        gap: Least distance, mm, shape (2, n): epidermis-dermis, dermis-hypodermis.
+        corners: Nodes of the upper face, counter-clockwise from outside, shape (e, 3); the lower
+            face's lie one layer deeper.
+        stiffness: Modulus times squared height, shape (e,).
+        volume: Rest volume, mm³, shape (e,).
+        order: How much harder an element resists that is pressed below `least`, shape (e,).
+        least: Share of its volume below which the order of the layers is in danger.
     """
 
+    corners: IndexArray
     stiffness: FloatArray
-    gap: FloatArray
+    volume: FloatArray
+    order: FloatArray
+    least: float
 
 
 class Plate(NamedTuple):
@@ -157,14 +168,19 @@ class Contacts(NamedTuple):
 
 
 class Tissue(NamedTuple):
-    """Everything of a rig that does not change while a face moves."""
+    """Everything of a rig that does not change while a face moves.
+
+    `grip`, shape (3, n), is how the layers share a muscle's force: the hypodermis takes it, but
+    where the layers lie close together the whole column does.
+    """
 
     rest: FloatArray
+    grip: FloatArray
     inverse_mass: FloatArray
     damping: float
     springs: Springs
     anchors: Anchors
-    barrier: Barrier
+    prisms: Prisms
     plate: Plate
     pressure: Pressure
     contacts: Contacts
@@ -299,24 +315,86 @@ def add_anchor_forces(
         force[2, i] += along * uz + across * nz
 
 
+def volume_gradients(nodes: FloatArray, corners: IndexArray) -> FloatArray:
+    """Return ∂V/∂x of each element's six nodes, upper face first, mm², shape (e, 6, 3).
+
+    Args:
+        nodes: Positions, mm, shape (nodes, 3).
+        corners: As in `Prisms`.
+    """
+    upper, lower = nodes[corners], nodes[corners + len(nodes) // 3]
+    middle, height = 0.5 * (upper + lower), (upper - lower).mean(axis=1)
+    p, r = middle[:, 1] - middle[:, 0], middle[:, 2] - middle[:, 0]
+    by_p, by_r = 0.25 * np.cross(r, height), 0.25 * np.cross(height, p)
+    turn = np.stack([-by_p - by_r, by_p, by_r], axis=1)
+    rise = np.cross(p, r)[:, None] / 6.0
+    return np.concatenate([turn + rise, turn - rise], axis=1)
+
+
 @kernel
-def add_barrier_forces(
-    x: FloatArray, barrier: Barrier, normals: FloatArray, force: FloatArray
-) -> None:
-    """Push apart layers that come closer than the barrier's gap along the normal."""
-    n = normals.shape[1]
-    for layer in range(2):
-        for a in range(n):
-            i, j = a + layer * n, a + (layer + 1) * n
-            nx, ny, nz = normals[0, a], normals[1, a], normals[2, a]
-            gap = (x[0, i] - x[0, j]) * nx + (x[1, i] - x[1, j]) * ny + (x[2, i] - x[2, j]) * nz
-            push = barrier.stiffness[a] * max(barrier.gap[layer, a] - gap, 0.0)
-            force[0, i] += push * nx
-            force[1, i] += push * ny
-            force[2, i] += push * nz
-            force[0, j] -= push * nx
-            force[1, j] -= push * ny
-            force[2, j] -= push * nz
+def add_prism_forces(x: FloatArray, prisms: Prisms, force: FloatArray) -> None:
+    """Keep the volume of each element between two layers, and the order of the layers.
+
+    V = A·h with A = ½ e1 x e2 of the triangle half way between the layers and h the mean of the
+    three columns; the force is minus the gradient of ½ k (V/V0 - 1)², steeper where an element
+    is nearly flat and level beyond `LEAST_VOLUME` and `MOST_VOLUME`. An element cannot be inverted
+    without passing V = 0.
+    """
+    corners = prisms.corners
+    n = x.shape[1] // 3
+    for e in range(corners.shape[0]):
+        a, b, c = corners[e, 0], corners[e, 1], corners[e, 2]
+        d, f, g = a + n, b + n, c + n
+        ax, ay, az = x[0, a] + x[0, d], x[1, a] + x[1, d], x[2, a] + x[2, d]
+        px = 0.5 * (x[0, b] + x[0, f] - ax)
+        py = 0.5 * (x[1, b] + x[1, f] - ay)
+        pz = 0.5 * (x[2, b] + x[2, f] - az)
+        rx = 0.5 * (x[0, c] + x[0, g] - ax)
+        ry = 0.5 * (x[1, c] + x[1, g] - ay)
+        rz = 0.5 * (x[2, c] + x[2, g] - az)
+        hx = (x[0, a] + x[0, b] + x[0, c] - x[0, d] - x[0, f] - x[0, g]) / 3.0
+        hy = (x[1, a] + x[1, b] + x[1, c] - x[1, d] - x[1, f] - x[1, g]) / 3.0
+        hz = (x[2, a] + x[2, b] + x[2, c] - x[2, d] - x[2, f] - x[2, g]) / 3.0
+        nx = 0.5 * (py * rz - pz * ry)
+        ny = 0.5 * (pz * rx - px * rz)
+        nz = 0.5 * (px * ry - py * rx)
+        share = (nx * hx + ny * hy + nz * hz) / prisms.volume[e]
+        share = min(max(share, LEAST_VOLUME), MOST_VOLUME)
+        push = (
+            -prisms.stiffness[e]
+            / prisms.volume[e]
+            * ((share - 1.0) - prisms.order[e] * min(share - prisms.least, 0.0) ** 2)
+        )
+        # Halves: each corner of the middle triangle is the mean of two nodes.
+        bx, by, bz = (
+            0.25 * push * (ry * hz - rz * hy),
+            0.25 * push * (rz * hx - rx * hz),
+            0.25 * push * (rx * hy - ry * hx),
+        )
+        cx, cy, cz = (
+            0.25 * push * (hy * pz - hz * py),
+            0.25 * push * (hz * px - hx * pz),
+            0.25 * push * (hx * py - hy * px),
+        )
+        ux, uy, uz = push * nx / 3.0, push * ny / 3.0, push * nz / 3.0
+        force[0, a] += ux - bx - cx
+        force[1, a] += uy - by - cy
+        force[2, a] += uz - bz - cz
+        force[0, d] -= ux + bx + cx
+        force[1, d] -= uy + by + cy
+        force[2, d] -= uz + bz + cz
+        force[0, b] += ux + bx
+        force[1, b] += uy + by
+        force[2, b] += uz + bz
+        force[0, f] += bx - ux
+        force[1, f] += by - uy
+        force[2, f] += bz - uz
+        force[0, c] += ux + cx
+        force[1, c] += uy + cy
+        force[2, c] += uz + cz
+        force[0, g] += cx - ux
+        force[1, g] += cy - uy
+        force[2, g] += cz - uz
 
 
 @kernel
@@ -446,13 +524,13 @@ def sheet_weight(rx: float, ry: float, rz: float, g: FloatArray) -> float:
 
 
 @kernel
-def add_muscle_forces(x: FloatArray, pull: Pull, force: FloatArray) -> None:
+def add_muscle_forces(x: FloatArray, pull: Pull, grip: FloatArray, force: FloatArray) -> None:
     """Add the muscles' forces at the skin's present place (mode "current", Eqs. 1-17).
 
-    Weights come from the epidermis point, the force acts on the hypodermis node under it.
+    Weights come from the epidermis point; the force acts on the nodes under it, as `grip` shares
+    it out.
     """
     n = pull.share.shape[1]
-    base = x.shape[1] - n
     for m in range(pull.kinds.shape[0]):
         g = pull.shape[m]
         for i in range(n):
@@ -479,26 +557,30 @@ def add_muscle_forces(x: FloatArray, pull: Pull, force: FloatArray) -> None:
                 dx, dy, dz = g[3], g[4], g[5]
             if weight == 0.0:
                 continue
-            force[0, base + i] += share * weight * dx
-            force[1, base + i] += share * weight * dy
-            force[2, base + i] += share * weight * dz
+            for layer in range(3):
+                hold = share * weight * grip[layer, i]
+                force[0, layer * n + i] += hold * dx
+                force[1, layer * n + i] += hold * dy
+                force[2, layer * n + i] += hold * dz
 
 
 @kernel
-def add_basis_forces(basis: FloatArray, activations: FloatArray, force: FloatArray) -> None:
-    """Add the muscles' rest-pose forces on the hypodermis (mode "rest"): Σ a_m B_m.
+def add_basis_forces(
+    basis: FloatArray, grip: FloatArray, activations: FloatArray, force: FloatArray
+) -> None:
+    """Add the muscles' rest-pose forces (mode "rest"): Σ a_m B_m, shared out to the layers.
 
     In the order of the muscles, whatever library or thread count: the same bits everywhere.
     """
     n = basis.shape[2]
-    base = force.shape[1] - n
     for m in range(basis.shape[0]):
         a = activations[m]
         if a == 0.0:
             continue
         for c in range(3):
-            for i in range(n):
-                force[c, base + i] += a * basis[m, c, i]
+            for layer in range(3):
+                for i in range(n):
+                    force[c, layer * n + i] += a * grip[layer, i] * basis[m, c, i]
 
 
 @kernel
@@ -509,14 +591,14 @@ def static_forces(
     force[:] = skull.load
     add_spring_forces(x, tissue.springs, tension, force)
     add_anchor_forces(x, tissue.anchors, skull.targets, skull.normals, force)
-    if tissue.barrier.stiffness.shape[0] > 0:
-        add_barrier_forces(x, tissue.barrier, skull.normals, force)
+    if tissue.prisms.corners.shape[0] > 0:
+        add_prism_forces(x, tissue.prisms, force)
     if tissue.plate.values.shape[0] > 0:
         add_plate_forces(x, tissue.rest, tissue.plate, tension, force)
     if tissue.pressure.quads.shape[0] > 0:
         add_pressure_forces(x, skull.bone, tissue.pressure, force)
     if pull.kinds.shape[0] > 0:
-        add_muscle_forces(x, pull, force)
+        add_muscle_forces(x, pull, tissue.grip, force)
 
 
 @kernel

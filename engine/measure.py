@@ -152,7 +152,7 @@ LANDMARKS: tuple[Landmark, ...] = (
     Landmark("AU20", "corner back", 6, 8, lambda f: f.towards(CORNER, 0.7, 0.0, -0.7)),
     Landmark("AU22", "lips forward", 3, 6, lambda f: f.lips_forward()),
     Landmark("AU22", "lip gap", 4, 12, lambda f: f.distance(LIP_TOP, LIP_BOTTOM), False),
-    Landmark("AU23", "lips narrow", 1, 3, lambda f: -f.opening("M2_1.L", "M2_9.L")),
+    Landmark("AU23", "lips narrow", 1, 3, lambda f: -f.opening("M2_1.L", "M2_9.L"), full=1.5),
     Landmark("AU23", "corners in", 0.5, 3, lambda f: -float(f.u(CORNER)[0]), False),
     Landmark("AU24", "lips pressed", 1, 3, lambda f: -f.opening("M2_1.L", "M2_9.L")),
     Landmark("AU25", "lip gap", 4, 6, lambda f: f.distance(LIP_TOP, LIP_BOTTOM)),

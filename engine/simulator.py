@@ -65,6 +65,7 @@ class Snapshot:
         assembly: The rig and model that it is simulated with.
         tick: When.
         x: Node positions, mm, shape (3, nodes).
+        v: Node velocities, mm/s, shape (3, nodes).
         signals: Activations, jaw, gaze and head as the face has them, shape (channels,).
         skull: The skull side as jaw and lids stand; its load is the dead load alone.
         frame: The face as viewers see it.
@@ -73,6 +74,7 @@ class Snapshot:
     assembly: Assembly
     tick: int
     x: FloatArray
+    v: FloatArray
     signals: FloatArray
     skull: Skull
     frame: Frame
@@ -217,6 +219,7 @@ class Simulator:
             assembly=self.assembly,
             tick=state.tick,
             x=state.x.copy(),
+            v=state.v.copy(),
             signals=state.signals.copy(),
             skull=state.skull,
             frame=self._frame(state),
@@ -297,10 +300,10 @@ class Simulator:
             # Air presses along the skin's normals at rest in either mode; it has no fibres to move.
             air = np.where(assembly.air, activations, 0.0)
             if air.any():
-                add_basis_forces(assembly.basis, air, load)
+                add_basis_forces(assembly.basis, assembly.tissue.arrays.grip, air, load)
             skull = state.skull._replace(load=load)
             return skull, self._moving_pull(activations, state.signals[m : m + 3])
-        add_basis_forces(assembly.basis, activations, load)
+        add_basis_forces(assembly.basis, assembly.tissue.arrays.grip, activations, load)
         return state.skull._replace(load=load), assembly.pull
 
     def _moving_pull(self, activations: FloatArray, jaw: FloatArray) -> Pull:

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
 from .arrays import FloatArray
-from .dynamics import Tissue
+from .dynamics import Tissue, volume_gradients
 
 IndexArray = npt.NDArray[np.int32] | npt.NDArray[np.int64]
 
@@ -21,7 +21,7 @@ SAFETY = 1.05
 def stiffness_matrix(tissue: Tissue, normals: FloatArray) -> sp.csr_array:
     """Return a stiff linearisation of a face at rest, shape (3 nodes, 3 nodes).
 
-    Every spring at k_H, the anchors, the barrier everywhere at work, the plate. Left out, as in
+    Every spring at k_H, the anchors, the elements' volume, the plate. Left out, as in
     the masses, is what only few nodes feel at a time: the compression guard and the skull's wall;
     the fat's pressure is soft beside the springs. Where an edit makes them strong, masses count
     them (`tissue.model`) and their own bound, the mass frequency, is taken instead. Degrees of
@@ -43,16 +43,26 @@ def stiffness_matrix(tissue: Tissue, normals: FloatArray) -> sp.csr_array:
     tie = anchors.tangential
     hold = tie[:, None, None] * np.eye(3) + (anchors.normal - tie)[:, None, None] * outer
     matrix = matrix + _node_blocks(np.arange(n) + 2 * n, hold, len(x))
-    if len(tissue.barrier.stiffness):
-        push = tissue.barrier.stiffness[:, None, None] * outer
-        for layer in range(2):
-            upper = np.arange(n) + layer * n
-            matrix = matrix + _pair_blocks(upper, upper + n, push, len(x))
+    if len(tissue.prisms.corners):
+        matrix = matrix + _prism_matrix(tissue)
     if len(tissue.plate.values):
         plate = sp.csr_array((tissue.plate.values, tissue.plate.columns, tissue.plate.start))
         onto = sp.eye_array(len(x), n, format="csr")
         matrix = matrix + sp.kron(onto @ plate @ onto.T, sp.eye_array(3), format="csr")
     return sp.csr_array(matrix)
+
+
+def _prism_matrix(tissue: Tissue) -> sp.csr_array:
+    """Return Σ k ∇V ∇Vᵀ / V0² over the elements, shape (3 nodes, 3 nodes)."""
+    prisms, nodes = tissue.prisms, tissue.rest.shape[1]
+    corners = np.concatenate([prisms.corners, prisms.corners + nodes // 3], axis=1)
+    columns = 3 * corners[:, :, None] + np.arange(3)
+    rows = np.broadcast_to(np.arange(len(corners))[:, None, None], columns.shape)
+    gradient = volume_gradients(np.ascontiguousarray(tissue.rest.T), prisms.corners)
+    slopes = sp.csr_array(
+        (gradient.ravel(), (rows.ravel(), columns.ravel())), shape=(len(corners), 3 * nodes)
+    )
+    return sp.csr_array(slopes.T @ sp.diags_array(prisms.stiffness / prisms.volume**2) @ slopes)
 
 
 def largest_frequency(tissue: Tissue, normals: FloatArray) -> float:

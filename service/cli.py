@@ -233,12 +233,25 @@ def measure(
     people: Annotated[
         bool, typer.Option("--people", help="Measure the action units on everybody instead.")
     ] = False,
+    flesh: Annotated[
+        bool, typer.Option("--flesh", help="Measure elements, volume and pasts instead.")
+    ] = False,
+    mixes: Annotated[int, typer.Option(min=1, help="Random mixes for --flesh.")] = 500,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Measure the action units against human motion, and how well the tissue behaves."""
     from engine import EngineError, builtin_rig
 
+    from .flesh import flesh_markdown, measure_flesh
     from .measuring import markdown, measure_people, measure_rig, people_markdown
+
+    if flesh:
+        with _console.status("measuring") as status:
+            found = measure_flesh(
+                builtin_rig(rig), mixes, lambda stage: status.update(f"measuring {stage}")
+            )
+        typer.echo(json.dumps(found, indent=2) if as_json else flesh_markdown(found))
+        return
 
     if people:
         with _console.status("measuring") as status:

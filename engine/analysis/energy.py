@@ -9,16 +9,27 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..dynamics import Anchors, Barrier, Plate, Pressure, Skull, Springs, Tissue
+from ..dynamics import (
+    LEAST_VOLUME,
+    MOST_VOLUME,
+    Anchors,
+    IndexArray,
+    Plate,
+    Pressure,
+    Prisms,
+    Skull,
+    Springs,
+    Tissue,
+)
 
-TERMS = ("springs", "dead_load", "anchors", "layer_order", "plate", "fat_pressure")
+TERMS = ("springs", "dead_load", "anchors", "skin_volume", "plate", "fat_pressure")
 
 
 def node_energy(x: FloatArray, tissue: Tissue, skull: Skull, rest: Skull) -> dict[str, FloatArray]:
     """Return the energy of each term by node, paper stiffness units x mm², each shape (n,).
 
     A column of the three layers' nodes counts as one node; a spring's energy is halved between
-    its ends, a fat column's shared by its corners.
+    its ends, an element's and a fat column's shared by their corners.
 
     Args:
         x: Node positions, mm, shape (3, nodes).
@@ -44,7 +55,7 @@ def _terms(x: FloatArray, tissue: Tissue, skull: Skull) -> tuple[FloatArray, ...
         spring_energy(x, tissue.springs),
         -((x - tissue.rest) * skull.load).sum(axis=0),
         anchor_energy(x[:, 2 * n :], tissue.anchors, skull),
-        barrier_energy(x, tissue.barrier, skull.normals),
+        prism_energy(x, tissue.prisms),
         plate_energy(x[:, :n] - tissue.rest[:, :n], tissue.plate),
         pressure_energy(x, tissue.pressure, skull.bone),
     )
@@ -92,17 +103,31 @@ def anchor_energy(x: FloatArray, anchors: Anchors, skull: Skull) -> FloatArray:
     return np.asarray(energy + 0.5 * anchors.skull * anchors.normal * inside**2)
 
 
-def barrier_energy(x: FloatArray, barrier: Barrier, normals: FloatArray) -> FloatArray:
-    """Return the energy of the layers' order, shape (n,)."""
-    n = normals.shape[1]
-    total = np.zeros(n)
-    if not len(barrier.stiffness):
-        return total
-    for layer in range(2):
-        upper, lower = x[:, layer * n : (layer + 1) * n], x[:, (layer + 1) * n : (layer + 2) * n]
-        gap = ((upper - lower) * normals).sum(axis=0)
-        total += 0.5 * barrier.stiffness * np.maximum(barrier.gap[layer] - gap, 0.0) ** 2
-    return total
+def prism_energy(x: FloatArray, prisms: Prisms) -> FloatArray:
+    """Return the energy of the elements' volume, a sixth at each of their nodes, shape (nodes,).
+
+    ½ k (r - 1)² + ⅓ k o (s - r)₊³ at r = V/V0, linear beyond `LEAST_VOLUME` and `MOST_VOLUME`.
+    """
+    nodes, corners = x.shape[1], prisms.corners
+    if not len(corners):
+        return np.zeros(nodes)
+    share = element_volumes(x, corners) / prisms.volume
+    held = np.clip(share, LEAST_VOLUME, MOST_VOLUME)
+    flat = np.maximum(prisms.least - held, 0.0)
+    energy = 0.5 * (held - 1.0) ** 2 + prisms.order * flat**3 / 3.0
+    energy += (share - held) * (held - 1.0 - prisms.order * flat**2)
+    each = np.repeat(prisms.stiffness * energy / 6.0, 6)
+    both = np.concatenate([corners, corners + nodes // 3], axis=1)
+    return np.asarray(np.bincount(both.ravel(), each, nodes), dtype=np.float64)
+
+
+def element_volumes(x: FloatArray, corners: IndexArray) -> FloatArray:
+    """Return the volume of each element between two layers, mm³, shape (e,)."""
+    upper, lower = x[:, corners], x[:, corners + x.shape[1] // 3]
+    middle = 0.5 * (upper + lower)
+    p, r = middle[:, :, 1] - middle[:, :, 0], middle[:, :, 2] - middle[:, :, 0]
+    height = (upper - lower).mean(axis=2)
+    return np.asarray(0.5 * (np.cross(p, r, axis=0) * height).sum(axis=0))
 
 
 def plate_energy(moved: FloatArray, plate: Plate) -> FloatArray:

@@ -100,8 +100,8 @@ def muscle_forces(snapshot: Snapshot) -> FloatArray:
             (pitch, yaw, thrust),
         )
         force = np.zeros_like(snapshot.x)
-        add_muscle_forces(snapshot.x, moved, force)
-        forces[row] = force[:, 2 * n :]
+        add_muscle_forces(snapshot.x, moved, assembly.tissue.arrays.grip, force)
+        forces[row] = force.reshape(3, 3, n).sum(axis=1)
     return forces
 
 

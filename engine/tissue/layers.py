@@ -15,6 +15,13 @@ NORMAL_SMOOTHING_ROUNDS = 3
 LEAST_AREA_SHARE = 0.3
 """Share of its area, along its own normal, that every triangle keeps in the deepest layer."""
 LEAST_BONE_DEPTH_MM = 2.0
+LEAST_SLANT = 0.35
+"""Least cosine between a node's inward line and the normal of any element around it."""
+BENDING_ROUNDS = 400
+LEAST_HEIGHT = 0.12
+"""Least height of an element, as a share of its columns' length."""
+LEAST_SHARE = 0.05
+"""Share of its depth that each node is traced to at least; less is no layer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +32,7 @@ class Sheet:
         points: Epidermis nodes at rest, mm, shape (n, 3).
         polygons: Quads over the nodes; a triangle's last corner is -1, shape (p, 4).
         triangles: Both ways of splitting each quad, and the triangles, shape (t, 3).
+        elements: One way of splitting them, as the head is drawn, shape (e, 3).
         edges: Node pairs, lower index first, shape (e, 2).
         edge_area: Area of the polygons at each edge, mm², shape (e,).
         polygon_area: mm², shape (p,).
@@ -37,6 +45,7 @@ class Sheet:
     points: FloatArray
     polygons: IntArray
     triangles: IntArray
+    elements: IntArray
     edges: IntArray
     edge_area: FloatArray
     polygon_area: FloatArray
@@ -65,12 +74,14 @@ class Layers:
         normals: Smoothed outward normals, shape (n, 3).
         bone: Foot of each node on the skull, mm, shape (n, 3).
         depth: Depth to bone by region, mm, shape (n,).
+        share: Share of the wished depths that each node is traced to, shape (n,).
     """
 
     nodes: FloatArray
     normals: FloatArray
     bone: FloatArray
     depth: FloatArray
+    share: FloatArray
 
 
 def sheet_of(head: Head) -> Sheet:
@@ -111,6 +122,7 @@ def sheet_of(head: Head) -> Sheet:
         points,
         polygons,
         triangles,
+        head.triangles[(head.triangles < n).all(axis=1)],
         edges,
         edge_area,
         area,
@@ -141,13 +153,13 @@ def stack_layers(
     else:
         hypodermis = (depth - dermis) / 2.0
     normals = smooth_normals(sheet)
-    share = safe_share(sheet, normals, dermis + hypodermis)
+    share = safe_share(sheet, normals, dermis, hypodermis)
     below = (share * dermis)[:, None] * normals
     deepest = (share * (dermis + hypodermis))[:, None] * normals
     foot = np.minimum(depth, np.maximum(depth * share, LEAST_BONE_DEPTH_MM))
     points = sheet.points
     nodes = np.concatenate([points, points - below, points - deepest])
-    return Layers(nodes, normals, points - foot[:, None] * normals, depth)
+    return Layers(nodes, normals, points - foot[:, None] * normals, depth, share)
 
 
 def smooth_normals(sheet: Sheet) -> FloatArray:
@@ -159,24 +171,86 @@ def smooth_normals(sheet: Sheet) -> FloatArray:
     normals = _unit_rows(normals)
     for _ in range(NORMAL_SMOOTHING_ROUNDS):
         normals = _unit_rows(0.5 * normals + 0.5 * (sheet.neighbor_mean @ normals))
-    return normals
+    return _inwards(sheet, normals)
 
 
-def safe_share(sheet: Sheet, normals: FloatArray, depth: FloatArray) -> FloatArray:
-    """Return the share of `depth` to trace at each node, shape (n,), 0 to 1."""
-    triangles = sheet.triangles
-    rest = triangle_normals(sheet.points, triangles)
-    size = (rest**2).sum(axis=1)
-    share = np.ones(len(depth))
+def _inwards(sheet: Sheet, normals: FloatArray) -> FloatArray:
+    """Return `normals` bent until each looks out of every element around its node.
+
+    At the lids' margins and the corners of the lips, where skin folds sharply, a smoothed normal
+    can lie in the plane of an element or behind it: traced along it, the element is inside out.
+    """
+    elements = sheet.elements
+    outwards = _unit_rows(triangle_normals(sheet.points, elements))
+    for _ in range(BENDING_ROUNDS):
+        slant = np.einsum("tc,tkc->tk", outwards, normals[elements])
+        short = np.maximum(LEAST_SLANT - slant, 0.0)
+        if short.max() < 1.0e-3:
+            return normals
+        bend = np.zeros_like(normals)
+        share = 0.5 * short**2 / short.max()
+        np.add.at(bend, elements, share[:, :, None] * outwards[:, None])
+        normals = _unit_rows(normals + bend)
+    lowest = np.full(len(normals), 1.0)
+    np.minimum.at(lowest, elements, np.einsum("tc,tkc->tk", outwards, normals[elements]))
+    bent = normals.copy()
+    for node in np.flatnonzero(lowest < LEAST_SLANT - 0.1):
+        bent[node] = _outermost(outwards[(elements == node).any(axis=1)])
+    return bent
+
+
+def _outermost(normals: FloatArray) -> FloatArray:
+    """Return the direction whose least cosine with `normals`, shape (k, 3), is greatest, (3,)."""
+    direction = normals.mean(axis=0)
+    for step in range(2000):
+        direction = direction / np.linalg.norm(direction)
+        direction = direction + 3.0 / (step + 10.0) * normals[(normals @ direction).argmin()]
+    return np.asarray(direction / np.linalg.norm(direction))
+
+
+def safe_share(
+    sheet: Sheet, normals: FloatArray, dermis: FloatArray, hypodermis: FloatArray
+) -> FloatArray:
+    """Return the share of the depths to trace at each node, shape (n,), `LEAST_SHARE` to 1.
+
+    Args:
+        sheet: The surface.
+        normals: Lines to trace against, shape (n, 3).
+        dermis: Thickness of the upper layer of elements, mm, shape (n,).
+        hypodermis: Thickness of the lower one, mm, shape (n,).
+    """
+    elements, points = sheet.elements, sheet.points
+    rest = triangle_normals(points, elements)
+    size = np.linalg.norm(rest, axis=1)
+    share = np.ones(len(dermis))
     for _ in range(80):
-        offset = sheet.points - normals * (depth * share)[:, None]
-        kept = (rest * triangle_normals(offset, triangles)).sum(axis=1) / size
+        middle = points - normals * (dermis * share)[:, None]
+        deepest = middle - normals * (hypodermis * share)[:, None]
+        kept = (rest * triangle_normals(deepest, elements)).sum(axis=1) / size**2
         bad = kept < LEAST_AREA_SHARE
-        if not bad.any():
+        for upper, lower in ((points, middle), (middle, deepest)):
+            height = np.linalg.norm(upper - lower, axis=1)[elements].mean(axis=1)
+            bad |= prism_volumes(upper, lower, elements) < 0.5 * LEAST_HEIGHT * size * height
+        short = np.zeros(len(share), dtype=bool)
+        short[elements[bad]] = True
+        short &= share > LEAST_SHARE
+        if not short.any():
             break
-        share[np.unique(triangles[bad])] *= 0.85
+        share[short] *= 0.85
         share = np.minimum(share, 0.5 * share + 0.5 * (sheet.neighbor_mean @ share))
+        share = np.maximum(share, LEAST_SHARE)
     return share
+
+
+def prism_volumes(upper: FloatArray, lower: FloatArray, elements: IntArray) -> FloatArray:
+    """Return the signed volume of the prisms between two layers of nodes, mm³, shape (e,).
+
+    The triangle half way between the layers times the mean height of the columns, as the kernel
+    takes it.
+    """
+    middle = 0.5 * (upper + lower)
+    height = (upper - lower)[elements].mean(axis=1)
+    return np.asarray(0.5 * (triangle_normals(middle, elements) * height).sum(axis=1))
 
 
 def triangle_normals(points: FloatArray, triangles: IntArray) -> FloatArray:

@@ -10,20 +10,21 @@ import scipy.sparse as sp
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..dynamics import (
     Anchors,
-    Barrier,
     Plate,
     Pressure,
+    Prisms,
     Pull,
     Skull,
     Springs,
     Tissue,
     static_forces,
+    volume_gradients,
 )
 from ..head import Head
 from ..head.anatomy import smoothstep
 from .contact import TARSAL_RINGS, Lids, contacts_of, lids_of, ring_and_spoke
-from .fields import fields_of
-from .layers import Layers, Sheet, sheet_of, stack_layers
+from .fields import fields_of, region_share
+from .layers import Layers, Sheet, prism_volumes, sheet_of, stack_layers
 from .parameters import TissueParameters
 from .springs import build_springs, reference_area
 
@@ -35,7 +36,20 @@ LIGAMENT_POINTS = ("M4_3", "M4_4", "C4_5")
 """Cage points on the nasolabial fold, where ligaments tie the skin to the bone."""
 PRESSURE_FREE_RINGS = ("EB", "E0", "E1", "E2", "S1", "M0")
 """Rings of lids and inner lips: their columns have no bone under them."""
-BARRIER_FLOOR = 0.3
+SPARED_ELEMENTS = 0.1
+"""The same for the elements between the layers, far stiffer when they are pressed flat."""
+THROAT_REGIONS = ("submental", "neck")
+THIN_MM = 0.6
+PRESSED, PRESSED_THIN = 0.3, -0.2
+"""Least share of its volume that an element keeps in any expression, by the length of its columns:
+what masses count."""
+THROAT_ORDER = 2.5
+"""How much harder than elsewhere elements under the chin resist being pressed flat."""
+THROAT_VOLUME = 0.35
+"""Share of the volume modulus under the chin, whose skin is loose: as stiff as the rest it would
+fold when the jaw opens wide."""
+LEAST_ELEMENT_MM = 0.6
+"""Thickness from which an element's stiffness is counted; a flat one would hardly resist."""
 SPARED_SHARE = 2.1
 """How much stiffer than its mass says a node may be in every hard phase at once.
 
@@ -44,6 +58,8 @@ within the stability bound as they are built in. Where an edit goes beyond, mass
 """
 SPARED_COLUMNS = 0.9
 """The same for the fat columns alone, which many nodes feel when the jaw opens."""
+THIN_SHARE = (0.15, 0.55)
+"""Share of its depth below which a muscle takes hold of the whole column."""
 LEAST_COLUMN_SHARE = 0.2
 
 
@@ -93,24 +109,28 @@ def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool)
     scale = sheet.node_area / reference_area(sheet, parameters)
     springs = build_springs(sheet, layers, fields, parameters, literal=literal_springs)
     anchors = _anchors(head, parameters, scale * fields.ties)
-    barrier = _barrier(layers, parameters, scale)
+    prisms = _prisms(head, sheet, layers, parameters)
+    elements = prism_stiffness(layers, prisms)
+    pressed = prism_stiffness(layers, prisms, pressed=True)
     plate = _plate(sheet, parameters, scale)
     pressure = _pressure(head, sheet, layers, parameters)
     node_count = 3 * head.sheet_count
-    stiffness = nodal_stiffness(springs, anchors, barrier, plate, pressure, node_count)
+    stiffness = nodal_stiffness(springs, anchors, elements, plate, pressure, node_count)
     columns = column_stiffness(layers, pressure)
-    hard = hardest_stiffness(springs, anchors, barrier, plate, columns, node_count)
+    hard = hardest_stiffness(springs, anchors, pressed, plate, columns, node_count)
     held = _held(head)
     hardened = (hard > SPARED_SHARE * stiffness) | (columns > SPARED_COLUMNS * stiffness)
+    hardened |= elements > SPARED_ELEMENTS * stiffness
     mass = 2.0 * np.where(hardened, hard, stiffness) / parameters.mass_frequency**2
     inverse_mass = np.where(np.tile(held, 3), 0.0, 1.0 / mass)
     arrays = Tissue(
         rest=np.ascontiguousarray(layers.nodes.T),
+        grip=_grip(layers, parameters),
         inverse_mass=inverse_mass,
         damping=parameters.damping,
         springs=springs,
         anchors=anchors,
-        barrier=barrier,
+        prisms=prisms,
         plate=plate,
         pressure=pressure,
         contacts=contacts_of(head),
@@ -147,7 +167,7 @@ def rest_skull(arrays: Tissue, layers: Layers, load: FloatArray) -> Skull:
 def nodal_stiffness(
     springs: Springs,
     anchors: Anchors,
-    barrier: Barrier,
+    elements: FloatArray,
     plate: Plate,
     pressure: Pressure,
     node_count: int,
@@ -161,8 +181,7 @@ def nodal_stiffness(
     np.add.at(total, springs.first, springs.high)
     np.add.at(total, springs.second, springs.high)
     total[2 * n :] += 0.5 * np.maximum(anchors.tangential, anchors.normal)
-    if len(barrier.stiffness):
-        total += np.repeat([0.5, 1.0, 0.5], n) * np.tile(barrier.stiffness, 3)
+    total += elements
     if len(plate.values):
         total[:n] += 0.5 * np.add.reduceat(np.abs(plate.values), plate.start[:-1])
     if len(pressure.quads):
@@ -180,7 +199,7 @@ COLUMN_GROWTH = 3.0
 def hardest_stiffness(
     springs: Springs,
     anchors: Anchors,
-    barrier: Barrier,
+    pressed: FloatArray,
     plate: Plate,
     columns: FloatArray,
     node_count: int,
@@ -188,7 +207,7 @@ def hardest_stiffness(
     """Return D_i with every phase of every term at its stiffest, shape (nodes,).
 
     Half of Gershgorin's bound on the rows of the stiffness matrix: the compression guard, the
-    stretched ties and the wall of the skull count too, and the barrier in full.
+    stretched ties and the wall of the skull count too, and the elements as if pressed flat.
 
     `columns` is from `column_stiffness`.
     """
@@ -200,8 +219,7 @@ def hardest_stiffness(
     total[2 * n :] += 0.5 * np.maximum(
         anchors.tangential * (1.0 + anchors.excess), anchors.normal * (1.0 + anchors.skull)
     )
-    if len(barrier.stiffness):
-        total += np.repeat([1.0, 2.0, 1.0], n) * np.tile(barrier.stiffness, 3)
+    total += pressed
     if len(plate.values):
         total[:n] += 0.5 * np.add.reduceat(np.abs(plate.values), plate.start[:-1])
     return total
@@ -244,6 +262,14 @@ def _dead_load(arrays: Tissue, layers: Layers) -> FloatArray:
     return -force
 
 
+def _grip(layers: Layers, p: TissueParameters) -> FloatArray:
+    n = len(layers.normals)
+    deep = np.ones(n)
+    if p.thin_skin_grip:
+        deep = (1.0 + 2.0 * smoothstep(*THIN_SHARE, layers.share)) / 3.0
+    return np.stack([0.5 * (1.0 - deep), 0.5 * (1.0 - deep), deep])
+
+
 def _anchors(head: Head, p: TissueParameters, scale: FloatArray) -> Anchors:
     tangential = p.anchor_tangential * head.anchor_weight * scale
     normal = p.anchor_normal * np.maximum(head.anchor_weight, NORMAL_ANCHOR_FLOOR) * scale
@@ -260,13 +286,52 @@ def _anchors(head: Head, p: TissueParameters, scale: FloatArray) -> Anchors:
     )
 
 
-def _barrier(layers: Layers, p: TissueParameters, scale: FloatArray) -> Barrier:
-    n = len(layers.normals)
-    if p.layer_order == 0.0:
-        return Barrier(np.zeros(0), np.zeros((2, 0)))
+def _prisms(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Prisms:
+    n, upper, area0 = head.sheet_count, sheet.elements, reference_area(sheet, p)
+    corners = np.concatenate([upper, upper + n])
     stack = layers.nodes.reshape(3, n, 3)
-    gaps = np.stack([((stack[k] - stack[k + 1]) * layers.normals).sum(axis=1) for k in range(2)])
-    return Barrier(p.layer_order * np.maximum(scale, BARRIER_FLOOR), p.layer_gap * gaps)
+    volume = np.concatenate([prism_volumes(stack[k], stack[k + 1], upper) for k in range(2)])
+    middle = 0.5 * (layers.nodes[corners] + layers.nodes[corners + n])
+    size = 0.5 * np.linalg.norm(
+        np.cross(middle[:, 1] - middle[:, 0], middle[:, 2] - middle[:, 0]), axis=1
+    )
+    throat = np.maximum(*(region_share(sheet, region) for region in THROAT_REGIONS))
+    under_chin = throat[corners % n].max(axis=1)
+    loose = 1.0 - (1.0 - THROAT_VOLUME) * under_chin
+    firm = 1.0 + (THROAT_ORDER - 1.0) * under_chin
+    thickness = np.maximum(volume / size, LEAST_ELEMENT_MM)
+    # Of a lid's plate all corners are moved: it cannot lose volume.
+    keep = np.tile(~_held(head)[upper].all(axis=1), 2) & (volume > 0.0) & (p.skin_volume > 0.0)
+    return Prisms(
+        corners[keep].astype(np.int32),
+        (p.skin_volume * loose * size / area0 * thickness**2)[keep],
+        volume[keep],
+        (p.layer_order * firm / loose)[keep],
+        p.layer_gap,
+    )
+
+
+def prism_stiffness(layers: Layers, prisms: Prisms, *, pressed: bool = False) -> FloatArray:
+    """Return each node's share D_i of the elements' stiffness, shape (nodes,).
+
+    Half of the row sum of k ∇V ∇Vᵀ / V0², at rest or where the element is `pressed` as far as
+    faces press it: thick ones to `PRESSED`, thin ones, in the corners of the lips, through.
+    """
+    total = np.zeros(len(layers.nodes))
+    if not len(prisms.corners):
+        return total
+    size = np.linalg.norm(volume_gradients(layers.nodes, prisms.corners), axis=2)
+    stiffness = prisms.stiffness / prisms.volume**2
+    if pressed:
+        corners = prisms.corners
+        n = len(layers.normals)
+        height = np.linalg.norm(layers.nodes[corners] - layers.nodes[corners + n], axis=2).mean(1)
+        share = np.where(height < THIN_MM, PRESSED_THIN, PRESSED)
+        stiffness = stiffness * (1.0 + 2.0 * prisms.order * np.maximum(prisms.least - share, 0.0))
+    stiff = stiffness[:, None] * size * size.sum(axis=1, keepdims=True)
+    nodes = np.concatenate([prisms.corners, prisms.corners + len(layers.normals)], axis=1)
+    np.add.at(total, nodes.ravel(), 0.5 * stiff.ravel())
+    return total
 
 
 def _plate(sheet: Sheet, p: TissueParameters, scale: FloatArray) -> Plate:

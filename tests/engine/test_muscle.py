@@ -168,7 +168,8 @@ def test_the_moving_kernel_agrees_with_the_muscles(points):
             np.ones((1, n)),
         )
         x = np.ascontiguousarray(np.tile(here, (3, 1)).T)
-        add_muscle_forces(x, pull, force)
+        deep = np.stack([np.zeros(n), np.zeros(n), np.ones(n)])
+        add_muscle_forces(x, pull, deep, force)
         expected = 2.0 * muscle.weights(here)[:, None] * muscle.directions(here)
         assert force[:, 2 * n :].T == pytest.approx(expected, abs=1e-7)
         assert not force[:, : 2 * n].any()
@@ -194,7 +195,8 @@ def test_the_moving_muscles_start_as_strong_as_the_resting_ones_say(name, reques
             continue
         one = Pull(*(part[row : row + 1] for part in pull))
         force = np.zeros_like(tissue.arrays.rest)
-        add_muscle_forces(tissue.arrays.rest, one, force)
+        add_muscle_forces(tissue.arrays.rest, one, tissue.arrays.grip, force)
+        force[:, 2 * n :] = force.reshape(3, 3, n).sum(axis=1)
         profile = {"profile": rig.model.sphincter} if muscle.kind == "sphincter" else {}
         weight = muscle.weights(sheet.points, **profile) * pull.share[row] * pull.scale[row]
         expected = weight[:, None] * muscle.directions(sheet.points)

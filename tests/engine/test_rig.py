@@ -154,7 +154,8 @@ def test_models_are_named_and_checked(standard_rig, paper_rig):
 
 def test_the_paper_rig_has_every_added_term_off(paper_rig):
     p = paper_rig.parameters
-    assert (p.pretension, p.layer_order, p.plate, p.fat_pressure, p.force_smoothing) == (0,) * 5
+    assert (p.pretension, p.skin_volume, p.plate, p.fat_pressure, p.force_smoothing) == (0,) * 5
+    assert not p.thin_skin_grip
     assert (p.cross_diagonals, p.force_quadrature, p.regional_depth) == (False,) * 3
     assert 1200 <= len(paper_rig.head.polygons) <= 1350
     assert (paper_rig.head.polygons[:, 3] == -1).all()

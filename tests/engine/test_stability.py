@@ -24,7 +24,8 @@ AT_THE_LIMIT: dict[str, dict[str, object]] = {
     "fat": {"fat_pressure": 600.0},
     "deep fat": {"regional_depth": False, "uniform_depth": 40.0, "fat_pressure": 600.0},
     "frequency": {"mass_frequency": 1000.0},
-    "order": {"layer_order": 2000.0, "layer_gap": 1.0},
+    "volume": {"skin_volume": 1000.0},
+    "order": {"layer_order": 100.0, "layer_gap": 1.0},
     "plate": {"plate": 500.0},
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine.arrays import FloatArray
-from engine.dynamics import Skull, Tissue
+from engine.dynamics import LEAST_VOLUME, MOST_VOLUME, Skull, Tissue
 
 
 def forces(x: FloatArray, tissue: Tissue, skull: Skull) -> FloatArray:
@@ -13,7 +13,7 @@ def forces(x: FloatArray, tissue: Tissue, skull: Skull) -> FloatArray:
     total = skull.load.copy()
     total += springs(x, tissue)
     total += anchors(x, tissue, skull)
-    total += barrier(x, tissue, skull)
+    total += prisms(x, tissue)
     total += plate(x, tissue)
     total += pressure(x, tissue, skull)
     return total
@@ -54,17 +54,31 @@ def anchors(x: FloatArray, tissue: Tissue, skull: Skull) -> FloatArray:
     return out
 
 
-def barrier(x: FloatArray, tissue: Tissue, skull: Skull) -> FloatArray:
-    """Return the push between layers that come too close."""
-    out, n = np.zeros_like(x), skull.targets.shape[1]
-    if not len(tissue.barrier.stiffness):
-        return out
-    for layer in range(2):
-        upper, lower = slice(layer * n, (layer + 1) * n), slice((layer + 1) * n, (layer + 2) * n)
-        gap = ((x[:, upper] - x[:, lower]) * skull.normals).sum(axis=0)
-        push = tissue.barrier.stiffness * np.maximum(tissue.barrier.gap[layer] - gap, 0.0)
-        out[:, upper] += push * skull.normals
-        out[:, lower] -= push * skull.normals
+def prism_energy(x: FloatArray, tissue: Tissue) -> FloatArray:
+    """Return ½ k (r - 1)² + ⅓ k o max(s - r, 0)³ of each element, r = V/V0, shape (e,)."""
+    p, n = tissue.prisms, x.shape[1] // 3
+    upper, lower = x[:, p.corners], x[:, p.corners + n]
+    middle = 0.5 * (upper + lower)
+    area = 0.5 * np.cross(
+        middle[:, :, 1] - middle[:, :, 0], middle[:, :, 2] - middle[:, :, 0], axis=0
+    )
+    share = (area * (upper - lower).mean(axis=2)).sum(axis=0) / p.volume
+    held = np.clip(share, LEAST_VOLUME, MOST_VOLUME)
+    flat = np.maximum(p.least - held, 0.0)
+    energy = 0.5 * (held - 1.0) ** 2 + p.order * flat**3 / 3.0
+    return np.asarray(p.stiffness * (energy + (share - held) * (held - 1.0 - p.order * flat**2)))
+
+
+def prisms(x: FloatArray, tissue: Tissue) -> FloatArray:
+    """Return minus the gradient of `prism_energy`, by central differences."""
+    out, n, step = np.zeros_like(x), x.shape[1] // 3, 1.0e-5
+    for node in np.unique(np.concatenate([tissue.prisms.corners, tissue.prisms.corners + n])):
+        for c in range(3):
+            moved = x.copy()
+            moved[c, node] += step
+            more = prism_energy(moved, tissue)
+            moved[c, node] -= 2 * step
+            out[c, node] = -(more - prism_energy(moved, tissue)).sum() / (2 * step)
     return out
 
 
@@ -111,7 +125,7 @@ def pressure(x: FloatArray, tissue: Tissue, skull: Skull) -> FloatArray:
 
 
 def energy(x: FloatArray, tissue: Tissue, skull: Skull) -> float:
-    """Return the potential energy of springs, anchors, barrier, plate, fat and load."""
+    """Return the potential energy of springs, anchors, elements, plate, fat and load."""
     s = tissue.springs
     length = np.linalg.norm(x[:, s.second] - x[:, s.first], axis=0)
     stretch = length - s.rest
@@ -126,14 +140,6 @@ def energy(x: FloatArray, tissue: Tissue, skull: Skull) -> float:
     inside = np.maximum(depth - a.skull_gap, 0.0)
     total += 0.5 * (a.tangential * (squared - depth**2) + a.normal * depth**2).sum()
     total += 0.5 * (a.excess * a.tangential * far**2 + a.skull * a.normal * inside**2).sum()
-    if len(tissue.barrier.stiffness):
-        for layer in range(2):
-            upper, lower = (
-                x[:, layer * n : (layer + 1) * n],
-                x[:, (layer + 1) * n : (layer + 2) * n],
-            )
-            gap = ((upper - lower) * skull.normals).sum(axis=0)
-            short = np.maximum(tissue.barrier.gap[layer] - gap, 0.0)
-            total += 0.5 * (tissue.barrier.stiffness * short**2).sum()
+    total += prism_energy(x, tissue).sum()
     total -= 0.5 * (plate(x, tissue) * (x - tissue.rest)).sum()
     return float(total + pressure_energy(x, tissue, skull) - (skull.load * x).sum())

@@ -1,0 +1,74 @@
+"""Flesh in every expression and in mixes: elements, volume, stillness, pasts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import Flesh, Keyframe, Rig, Simulator, examine, path_dependence, random_mixes
+from engine.flesh import RIGID_REGIONS, element_volumes
+from engine.tissue.layers import sheet_of
+
+# Lips that are sucked in turn a few of the thinnest elements of their corners over.
+TURNED_OVER = {"AU23": 6, "AU28": 12, "happiness": 2}
+# An open mouth thins the skin; every other expression keeps 3 %.
+THINNED = {"AU27": 0.06, "happiness": 0.05}
+
+
+@pytest.fixture(scope="module")
+def flesh(standard_rig: Rig) -> dict[str, Flesh]:
+    units = [n for n, u in standard_rig.action_units.items() if u.region not in RIGID_REGIONS]
+    faces = {unit: Keyframe(action_units={unit: 1.0}) for unit in units}
+    faces |= {e: Keyframe(emotion=(e, 1.0)) for e in standard_rig.emotions if e != "neutral"}
+    return dict(zip(faces, examine(standard_rig, list(faces.values())), strict=True))
+
+
+def test_no_element_is_flat_at_rest(standard_rig):
+    simulator = Simulator(standard_rig)
+    volumes = element_volumes(simulator.assembly.tissue.arrays.rest, sheet_of(standard_rig.head))
+    assert volumes.min() > 0.05
+
+
+def test_no_element_is_turned_over(flesh):
+    over = {name: f.inverted for name, f in flesh.items() if f.inverted}
+    assert all(count <= TURNED_OVER.get(name, 0) for name, count in over.items()), over
+
+
+def test_tissue_keeps_its_volume(flesh):
+    lost = {name: f.volume for name, f in flesh.items()}
+    assert {n: v for n, v in lost.items() if abs(v) > THINNED.get(n, 0.03)} == {}
+
+
+def test_expressions_are_still_after_a_second(flesh):
+    moving = [name for name, f in flesh.items() if f.speed > 0.5]
+    assert len(moving) <= 3, moving
+    assert max(f.speed for f in flesh.values()) < 5.0
+
+
+def test_random_mixes_hold_their_layers(standard_rig):
+    mixed = examine(standard_rig, random_mixes(standard_rig, 24, 7))
+    elements = 2 * len(sheet_of(standard_rig.head).elements)
+    assert sum(f.inverted for f in mixed) < 0.001 * elements * len(mixed)
+    assert max(abs(f.volume) for f in mixed) < 0.06
+
+
+def test_mixes_are_seeded(standard_rig):
+    one, other = (random_mixes(standard_rig, 5, seed) for seed in (3, 4))
+    assert one == random_mixes(standard_rig, 5, 3)
+    assert one != other
+    for mix in one:
+        assert 2 <= len(mix.action_units) <= 5
+        assert all(0.2 <= value <= 1.0 for value in mix.action_units.values())
+
+
+def test_the_past_leaves_no_trace(standard_rig):
+    faces = [Keyframe(action_units={unit: 1.0}) for unit in ("AU4", "AU12")]
+    assert max(path_dependence(standard_rig, faces, histories=3)) < 0.3
+
+
+def test_without_volume_layers_pass_each_other(standard_rig):
+    bare = standard_rig.derive(tissue={"skin_volume": 0.0, "thin_skin_grip": False})
+    face = [Keyframe(action_units={"AU12": 1.0})]
+    turned = examine(bare, face)[0]
+    assert turned.inverted > 20
+    assert np.isfinite(turned.volume)
