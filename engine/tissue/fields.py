@@ -20,6 +20,12 @@ LAXITY_OF_TENSION = 0.4
 LAXITY_OF_FIBRES = 0.35
 """Share of the stiffness below the strain threshold, and of the ties to the skull, that wholly lax
 skin has lost; elasticity halves from 20 to 80 years (Cua, Wilhelm, Maibach 1990)."""
+THROAT_REGIONS = ("submental", "neck")
+THROAT_TENSION = 3.0
+"""How much more than the face's the skin under the chin is pre-tensioned, over the platysma: with
+as little tension as the rest a wide open mouth comes to rest in one of two shapes, 9 mm apart."""
+MOST_TENSION = 0.4
+"""Greatest pre-tension anywhere; the same bound as on what an edit asks for."""
 SPREAD_MM = 18.0
 """How far a measured thickness speaks for the skin around it."""
 DERMIS_OF_DEPTH = 0.4
@@ -75,9 +81,13 @@ def fields_of(head: Head, sheet: Sheet, parameters: TissueParameters) -> TissueF
         stiffness=_region_factor(sheet, p.region_stiffness),
         skin=np.clip(dermis / own_dermis, *THICKNESS_EFFECT),
         slack=1.0 - LAXITY_OF_FIBRES * laxity,
-        pretension=p.pretension
-        * _region_factor(sheet, p.region_pretension)
-        * (1.0 - LAXITY_OF_TENSION * laxity),
+        pretension=np.minimum(
+            p.pretension
+            * _throat_tension(sheet)
+            * _region_factor(sheet, p.region_pretension)
+            * (1.0 - LAXITY_OF_TENSION * laxity),
+            MOST_TENSION,
+        ),
         ties=ties,
     )
 
@@ -135,6 +145,11 @@ def _region_factor(sheet: Sheet, factors: Mapping[str, float]) -> FloatArray:
     for region, factor in factors.items():
         scale *= 1.0 + (factor - 1.0) * region_share(sheet, region)
     return scale
+
+
+def _throat_tension(sheet: Sheet) -> FloatArray:
+    share = np.maximum(*(region_share(sheet, region) for region in THROAT_REGIONS))
+    return np.asarray(1.0 + (THROAT_TENSION - 1.0) * share)
 
 
 def _region_value(sheet: Sheet, values: Mapping[str, float]) -> FloatArray:

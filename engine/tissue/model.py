@@ -23,7 +23,7 @@ from ..dynamics import (
 from ..head import Head
 from ..head.anatomy import smoothstep
 from .contact import TARSAL_RINGS, Lids, contacts_of, lids_of, ring_and_spoke
-from .fields import fields_of, region_share
+from .fields import THROAT_REGIONS, fields_of, region_share
 from .layers import Layers, Sheet, prism_volumes, sheet_of, stack_layers
 from .parameters import TissueParameters
 from .springs import build_springs, reference_area
@@ -38,7 +38,6 @@ PRESSURE_FREE_RINGS = ("EB", "E0", "E1", "E2", "S1", "M0")
 """Rings of lids and inner lips: their columns have no bone under them."""
 SPARED_ELEMENTS = 0.1
 """The same for the elements between the layers, far stiffer when they are pressed flat."""
-THROAT_REGIONS = ("submental", "neck")
 THIN_MM = 0.6
 PRESSED, PRESSED_THIN = 0.3, -0.2
 """Least share of its volume that an element keeps in any expression, by the length of its columns:
