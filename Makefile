@@ -14,7 +14,7 @@ run: $(STAMPS)/python $(STAMPS)/viewer
 
 test: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	npm --prefix static test
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile
 
 check: $(STAMPS)/python-dev $(STAMPS)/node
 	$(BIN)/ruff format --check .
@@ -33,9 +33,9 @@ measure: $(STAMPS)/python
 	$(BIN)/risorius measure
 
 sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
-	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 280
-	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 400 --columns 3 \
-		--only happiness,sadness,fear,anger,surprise,disgust
+	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 240 --columns 8
+	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 360 --columns 4 \
+		--only rest,happiness,sadness,fear,anger,surprise,disgust,contempt
 	$(BIN)/risorius sheet -o docs/people.jpg --people --only rest --whole \
 		--view front,three-quarter,profile --size 240 --columns 6
 	$(BIN)/risorius sheet -o docs/closeups.jpg --rig standard,mei,ruth,kwame --only rest \

@@ -45,9 +45,10 @@ PAPER_FORCE_SHARES: Mapping[str, float] = {
     "frontalis_lateral": 0.53,
     "levator_labii_alaeque_nasi": 0.56,
     "levator_labii_superioris": 0.36,
-    "depressor_anguli_oris": 0.52,
-    "depressor_labii_inferioris": 0.19,
-    "mentalis": 0.50,
+    "zygomatic_major": 0.50,
+    "depressor_anguli_oris": 0.64,
+    "depressor_labii_inferioris": 0.26,
+    "mentalis": 0.54,
     "orbicularis_oris": 0.44,
 }
 """The same where 0.42 leaves a landmark of Table 1 outside its human range; by muscle, no side."""

@@ -89,6 +89,8 @@ def test_the_table_is_what_the_calibration_fits() -> None:
     told = {(unit, what.strip()): float(value) for unit, what, value in rows}
     for measured in measure_units(builtin_rig("standard")):
         mark = measured.landmark
+        if int(mark.unit.removeprefix("AU")) > 50:
+            continue  # Head and gaze go as far as their pose says.
         assert told[mark.unit, mark.what] == pytest.approx(measured.value, abs=0.1)
 
 
