@@ -24,7 +24,7 @@ def targets_of(rig, keyframe, names=LANDMARKS_68):
 @pytest.fixture(scope="module")
 def corner(standard_rig):
     """The inverse of one landmark, asked for farther than it can go."""
-    return invert(standard_rig, {"M1_5.L": [15.0, 40.0, -10.0], "prn": [0.0, 0.0, 0.0]})
+    return invert(standard_rig, {"M1_5.L": [15.0, 50.0, -10.0], "prn": [0.0, 0.0, 0.0]})
 
 
 def test_known_activations_are_recovered(standard_rig):
@@ -80,14 +80,14 @@ def test_bounds_hold_where_a_target_cannot_be_reached(standard_rig, corner):
             assert value > 0.0
     assert 0.0 <= corner.jaw["pitch"] <= 35.0
     left, nose = corner.landmarks
-    assert left.residual > 10.0
+    assert left.residual > 15.0
     assert left.residual == pytest.approx(math.dist(left.target, left.reached))
     assert nose.residual < left.residual
     assert corner.rms == pytest.approx(math.hypot(left.residual, nose.residual) / math.sqrt(2))
 
 
 def test_the_same_question_has_the_same_answer(standard_rig, corner):
-    again = invert(standard_rig, {"M1_5.L": [15.0, 40.0, -10.0], "prn": [0.0, 0.0, 0.0]}, threads=1)
+    again = invert(standard_rig, {"M1_5.L": [15.0, 50.0, -10.0], "prn": [0.0, 0.0, 0.0]}, threads=1)
     assert again.to_json() == corner.to_json()
 
 
