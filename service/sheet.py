@@ -178,7 +178,7 @@ def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[
         show(f"building {rig}", number / len(rigs))
         poses = poses_of(_call(page, "GET", f"{url}/api/rigs/{rig}"), plan.only)
         session = _call(page, "POST", f"{url}/api/sessions", {"rig": rig})["id"]
-        page.goto(f"{url}/?session={session}&bare=1&dpr=1")
+        page.goto(f"{url}/?session={session}&bare=1&still=1&dpr=1")
         page.wait_for_function(_SETTLED, arg=-1)
         for index, pose in enumerate(poses):
             show(f"{rig}: {pose.label}", (number + index / len(poses)) / len(rigs))

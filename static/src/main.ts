@@ -83,6 +83,7 @@ function createScene(): Scene {
     return new Scene(element('face') as HTMLCanvasElement, {
       orbit: !page.bare,
       pixelRatio: page.pixelRatio,
+      still: page.still,
       view: page.view,
       placeOf: (name) => face?.landmarkPlace(name) ?? null,
       update,

@@ -39,6 +39,8 @@ export interface SceneOptions {
   /** Let the visitor turn the camera. */
   orbit: boolean;
   pixelRatio: number | null;
+  /** Draw only when asked by `rendered`. */
+  still: boolean;
   view: string;
   /** Where the face has a landmark; close-ups look at them. */
   placeOf: PlaceOfLandmark;
@@ -158,7 +160,8 @@ export class Scene {
       this.scheduled = false;
       this.stepGlide(performance.now());
       const updated = this.options.update();
-      if (updated || this.changed) this.draw();
+      this.changed ||= updated;
+      if (this.changed && !(this.options.still && this.waiting.length === 0)) this.draw();
     });
   }
 

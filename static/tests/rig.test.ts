@@ -104,6 +104,7 @@ describe('readPageOptions', () => {
       session: null,
       rig: 'standard',
       bare: false,
+      still: false,
       view: 'front',
       level: null,
       pixelRatio: null,
@@ -117,10 +118,11 @@ describe('readPageOptions', () => {
   });
 
   it('reads what is asked', () => {
-    expect(readPageOptions('?session=a_1&rig=paper&bare=1&view=profile&dpr=1')).toEqual({
+    expect(readPageOptions('?session=a_1&rig=paper&bare=1&still=1&view=profile&dpr=1')).toEqual({
       session: 'a_1',
       rig: 'paper',
       bare: true,
+      still: true,
       view: 'profile',
       level: null,
       pixelRatio: 1,
