@@ -4,7 +4,6 @@
 import { ShaderChunk } from 'three';
 import type { Program } from './shader-edit';
 import { replaced } from './shader-edit';
-import { softerShadows } from './soft-shadows';
 
 /** Half the least width of a drawn strand, in pixels across half the picture's height. */
 const LEAST_PIXELS = '1.15';
@@ -128,7 +127,6 @@ export function makeHair(
       `#include <lights_physical_pars_fragment>\n${LIGHT}`,
     ],
     ['#include <lights_physical_fragment>', SCATTER],
-    ['#include <shadowmap_pars_fragment>', softerShadows()],
   ]);
 }
 

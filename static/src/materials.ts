@@ -139,7 +139,7 @@ function strands(vertexColors: boolean): Material {
 
 /** Cards hide what is behind them as far as samples of a pixel can, in any order. */
 function cards(vertexColors: boolean, map: Texture): Material {
-  map.anisotropy = 8;
+  map.anisotropy = 2;
   const material = new MeshPhysicalMaterial({
     vertexColors,
     color: 0xffffff,
