@@ -28,7 +28,8 @@ class Cards:
         colors: Linear RGB at each point, shape (n, k, 3).
         lanes: Which clump of the texture is drawn on each, shape (n,).
         flipped: Whether it is drawn mirrored, shape (n,).
-        reach: How far down the texture the tips lie, shape (n,); less than 1 cuts hair bluntly.
+        down: How far down the texture each point lies, shape (n, k): roots that begin below its top
+            stand close, tips that end above its foot are cut bluntly.
     """
 
     lines: FloatArray
@@ -38,7 +39,7 @@ class Cards:
     colors: FloatArray
     lanes: IntArray
     flipped: IntArray
-    reach: FloatArray
+    down: FloatArray
 
     def only(self, chosen: BoolArray) -> Cards:
         """Return the cards that are chosen, shape (n,)."""
@@ -98,7 +99,7 @@ def _strips(cards: Cards) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
     right = np.where(cards.flipped, edges[:, 0] + inset, edges[:, 1] - inset)
     uvs = np.empty((count, points, 2, 2))
     uvs[:, :, 0, 0], uvs[:, :, 1, 0] = left[:, None], right[:, None]
-    uvs[..., 1] = (np.linspace(0, 1, points) * cards.reach[:, None])[:, :, None]
+    uvs[..., 1] = cards.down[:, :, None]
 
     one = [
         corner

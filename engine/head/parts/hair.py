@@ -46,6 +46,16 @@ LEAST = 0.5
 """No card grows where hair is thinner than this, or it would stand alone as a tuft."""
 HEM = -96.0
 """Where a bob ends, mm: at the chin."""
+HEM_RAGGED = 2.2
+"""How unevenly it is cut, mm."""
+COVERED_ROOTS = 0.16
+"""How far down the texture long hair begins where hair is full: below the tops of all strands."""
+CLOSING = (0.88, 1.0)
+"""Density of hair between which its roots stand apart, and are covered."""
+UNCUT = 0.4
+"""How far down it is where the cut begins: above the tips of all but the shortest."""
+STRAY = 0.12
+"""No hanging hair lies on a forehead that bears less hair than this."""
 PARTING_HALF = 0.5
 """Half the width of a parting, mm, and how far from it hair still begins at it:"""
 PARTING_REACH = 8.0
@@ -154,9 +164,37 @@ def _card_groups(scalp: Scalp, style: Style, grow: Grow, noise: np.random.Genera
         grown = grow(scalp, style, roots[some], length[some], rise[some], int(pieces), noise)
         light = _light(layer[some], edge[some], int(pieces) + 1)
         tinted = light[..., None] * colors[some, None, :]
-        reach = noise.uniform(*style.cut, int(some.sum()))
-        cards.append(_cards(grown, width[some], tinted, lanes[some], reach, noise))
+        down = _down(style, mask[some], int(pieces) + 1, noise)
+        drawn = _cards(grown, style, width[some], tinted, lanes[some], down, noise)
+        if style.kind == "hanging":
+            drawn = drawn.only(~_astray(grown, scalp.recipe))
+        cards.append(drawn)
     return cards
+
+
+def _down(style: Style, mask: FloatArray, points: int, noise: np.random.Generator) -> FloatArray:
+    """Return how far down the texture the points of cards lie, shape (n, points).
+
+    Long hair covers its roots, but at the hair's edge, where within a piece of the card they stand
+    apart; and it is cut: all strands are there until they end within the last piece.
+    """
+    along = np.linspace(0, 1, points)[None, :]
+    tips = noise.uniform(*style.cut, len(mask))[:, None]
+    if style.kind != "hanging":
+        return np.asarray(along * tips)
+    whole = COVERED_ROOTS + (UNCUT - COVERED_ROOTS) * along / along[:, -2:-1]
+    apart = noise.uniform(0.6, 1.0, len(mask)) * (1 - smoothstep(*CLOSING, mask))
+    down = np.where(along < 1, whole, tips)
+    down[:, 0] *= 1 - apart
+    return down
+
+
+def _astray(grown: _Grown, recipe: Recipe) -> BoolArray:
+    """Return which lines hang over the bare forehead, shape (n,): a lock that nobody combed."""
+    points = grown.lines[:, 1:].reshape(-1, 3)
+    bare = on_forehead(points)
+    bare[bare] = hair_mask(points[bare], recipe) < STRAY
+    return np.asarray(bare.reshape(len(grown.lines), -1).any(axis=1))
 
 
 def _lanes(
@@ -172,10 +210,11 @@ def _lanes(
 
 def _cards(
     grown: _Grown,
+    style: Style,
     width: FloatArray,
     colors: FloatArray,
     lanes: IntArray,
-    reach: FloatArray,
+    down: FloatArray,
     noise: np.random.Generator,
 ) -> Cards:
     count = len(grown.lines)
@@ -190,11 +229,11 @@ def _cards(
         lines=grown.lines,
         sides=sides,
         normals=grown.normals + 0.25 * up,
-        widths=width[:, None] * (1.0 - 0.5 * along**2)[None, :],
+        widths=width[:, None] * (1.0 - style.taper * along**2)[None, :],
         colors=colors,
         lanes=lanes,
         flipped=noise.integers(0, 2, count).astype(bool),
-        reach=reach,
+        down=down,
     )
 
 
@@ -256,29 +295,33 @@ def _hanging(
     turn = style.ruffle * (
         1.2 * smooth_noise(roots, 16.0, 41 + scalp.recipe.seed) + noise.normal(0, 0.4, count)
     )
-    # All end at one height, the chin's, a little lower behind.
-    hem = HEM - 6 * smoothstep(-20, 40, roots[:, 2]) + noise.normal(0, 4.0, count)
+    # All end at one height, the chin's, a little lower in front.
+    hem = HEM - 6 * smoothstep(-20, 40, roots[:, 2]) + noise.normal(0, HEM_RAGGED, count)
     place, normal = _planted(scalp, style, roots)
     lines, normals = [place], [normal]
     fallen = np.zeros((count, 1))
     # Its way over the head takes the longer, the higher it begins.
     way = 0.72 * np.linalg.norm(roots[:, [0, 2]] - HANG_AXIS, axis=1)
     reach = np.maximum(roots[:, 1] - hem, 12.0) + np.maximum(66 - way, 0)
-    step = np.minimum(reach, length) / pieces
+    step = (np.minimum(reach, length) / pieces)[:, None]
     for k in range(pieces):
         share = (k + 1) / pieces
         over = turned(flow(scalp, style, place, normal), normal, turn)
         drop = np.column_stack([np.zeros((count, 1)), np.full((count, 1), -1.0), np.zeros(count)])
         heading = unit(over + fallen * (drop - over))
-        place = place + step[:, None] * heading
-        below = place[:, 1] < HEM + 22
-        place = place - np.where(below, 0.16 * step, 0.0)[:, None] * _from_axis(place)
+        place = place + step * heading
+        below = place[:, 1:2] < HEM + 22
+        place = place - np.where(below, 0.16 * step, 0.0) * _from_axis(place)
         lifted = rise * min(1.0, 0.35 + 2.5 * share)
         place, normal = _clear(scalp, place, lifted)
         fallen = np.maximum(fallen, smoothstep(0.35, 0.1, normal[:, 1:2]))
         lines.append(place)
         normals.append(normal)
-    return _grown(np.stack(lines, axis=1), np.stack(normals, axis=1))
+    # What comes to the hem was cut at it.
+    at_hem = np.stack(lines, axis=1)
+    at_hem[:, -1, 1] -= np.clip(at_hem[:, -1, 1] - hem, 0, 0.9 * step[:, 0])
+    at_hem[..., 1] = np.maximum(at_hem[..., 1], hem[:, None] + np.arange(pieces, -1, -1.0))
+    return _grown(at_hem, np.stack(normals, axis=1))
 
 
 def _planted(scalp: Scalp, style: Style, roots: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -397,6 +440,10 @@ def flow(scalp: Scalp, style: Style, points: FloatArray, normals: FloatArray) ->
         side = np.tanh((points[:, 0] - style.parting) / 3.0)
         over = front(points)
         combed = np.column_stack([1.5 * side, 0.4 * over, 0.35 - 0.75 * over])
+        if style.kind == "hanging":
+            row = front_row(points)[:, None]
+            back = np.column_stack([1.1 * side, 0.0 * over + 1.0, 0.0 * over - 1.0])
+            combed = combed + row * (back - combed)
     # On the sides hair falls, at the temples backwards.
     back = 0.75 * smoothstep(15, 50, points[:, 2])
     fallen = np.column_stack([np.zeros(len(points)), np.full(len(points), -1.0), -0.1 - back])

@@ -31,6 +31,7 @@ class Style:
         stiffness: How far hair goes on straight where the head bends away from it, 0 to 1.
         segments: Fewest and most pieces of a card.
         cut: Which share of the texture's strands the cards end at: 1 tapers, less is blunt.
+        taper: How much narrower cards are at their tips.
         flyaways: Single hairs per square centimetre that stand off.
         edge: Baby hairs per square centimetre of the hairline.
     """
@@ -46,6 +47,7 @@ class Style:
     stiffness: float = 0.35
     segments: tuple[int, int] = (2, 5)
     cut: tuple[float, float] = (1.0, 1.0)
+    taper: float = 0.5
     flyaways: float = 1.2
     edge: float = 30.0
 
@@ -101,7 +103,8 @@ STYLES: Mapping[str, Style] = {
         rise=(7.0, 8.0, 9.0, 10.0, 10.0, 9.5, 7.5),
         width=(6.5, 7.0, 7.5, 7.5, 7.5, 7.5, 7.5),
         density=(3.6, 3.8, 3.8, 3.8, 4.2, 4.6, 4.8),
-        cut=(0.5, 0.75),
+        cut=(0.62, 0.9),
+        taper=0.15,
         parting=8.0,
         ruffle=0.10,
         flyaways=0.3,

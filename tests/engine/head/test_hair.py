@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from engine.arrays import BoolArray
 from engine.head import Head
 from engine.head.hair_color import NATURAL, brow_color, hair_color, strand_colors
 from engine.head.hairline import hair_mask, recession, scalp_cover
 from engine.head.head import Part
 from engine.head.parts.brows import brows_part
 from engine.head.parts.cards import on_forehead
-from engine.head.parts.hair import hair_parts
+from engine.head.parts.hair import HEM, HEM_RAGGED, hair_parts
 from engine.head.parts.scalp import EAR_CENTER, EAR_RADII, Scalp
 from engine.head.parts.strand_texture import HEIGHT, LANES, WIDTH, hair_texture
 from engine.head.recipe import HAIR_COLORS, HAIR_STYLES, STANDARD, Recipe
@@ -24,6 +25,13 @@ BUDGET = {"bald": 0, "bob": 36_000, "curly": 36_000}
 
 def grown(head: Head, recipe: Recipe) -> list[Part]:
     return hair_parts(head.drawn, recipe)
+
+
+def first_pairs(part: Part) -> BoolArray:
+    """Return which vertices of cards are those of their roots: where the texture begins anew."""
+    assert part.uvs is not None
+    down = part.uvs[::2, 1]
+    return np.repeat(down < np.roll(down, 1), 2)
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +76,7 @@ def test_cards_are_rooted_where_hair_grows(
     recipe = Recipe(hair_style=style)
     part = next(part for part in parts[style] if part.name == "hair")
     assert part.uvs is not None
-    roots = part.vertices[part.uvs[:, 1] == 0].reshape(-1, 2, 3).mean(axis=1)
+    roots = part.vertices[first_pairs(part)].reshape(-1, 2, 3).mean(axis=1)
     height, _ = Scalp(head.drawn, recipe).height(roots)
     assert np.abs(height).max() < 2.5
     assert (hair_mask(roots, recipe) > 0.2).mean() > 0.97
@@ -165,3 +173,33 @@ def test_hanging_hair_goes_over_the_ears(parts: dict[str, list[Part]]) -> None:
     away = (np.abs(free * [1, 0, 0]) + free * [0, 1, 1] - EAR_CENTER) / (0.8 * EAR_RADII)
     inside = np.linalg.norm(away, axis=1) < 1
     assert inside.mean() < 0.01
+
+
+def test_long_hair_shows_no_scalp_beside_its_parting(
+    parts: dict[str, list[Part]],
+) -> None:
+    bob = next(part for part in parts["bob"] if part.name == "hair")
+    assert bob.uvs is not None
+    roots = first_pairs(bob)
+    full = hair_mask(bob.vertices[roots], Recipe(hair_style="bob")) > 0.999
+    sparse = LANES[0].stagger
+    assert (bob.uvs[roots, 1][full] >= sparse).mean() > 0.95
+
+
+def test_long_hair_leaves_the_forehead_bare(parts: dict[str, list[Part]]) -> None:
+    recipe = Recipe(hair_style="bob")
+    for part in parts["bob"]:
+        if part.uvs is not None:
+            middles = part.vertices.reshape(-1, 2, 3).mean(axis=1)
+            middles = middles[~first_pairs(part)[::2]]
+            ahead = middles[on_forehead(middles)]
+            assert (hair_mask(ahead, recipe) > 0.1).all(), part.name
+
+
+def test_a_bob_is_cut_at_one_height(parts: dict[str, list[Part]]) -> None:
+    """Nothing hangs below the hem, which slants by 6 mm and is a bit ragged; much comes to it."""
+    bob = next(part for part in parts["bob"] if part.name == "hair")
+    tips = np.roll(first_pairs(bob), -2)
+    low = bob.vertices[tips].reshape(-1, 2, 3).mean(axis=1)[:, 1]
+    assert low.min() > HEM - 6 - 5 * HEM_RAGGED
+    assert (low < HEM + 3 * HEM_RAGGED).mean() > 0.3
