@@ -98,9 +98,10 @@ const MOUTH_TOP = -0.04;
 const LIPS = 0.094;
 const THROAT = 0.045;
 const DARKEST = { wet: 0.4, teeth: 0.6 };
-/** A face that reaches lower than this [m] has a neck, which leaves the light over so many mm. */
+/** A face that reaches lower than this [m] has a neck, which fades from its cut, uneven by so many mm, up to there. */
 const NECK_BELOW = -0.14;
-const NECK_FADE = 66;
+const NECK_END = 13;
+const NECK_FADE = 60;
 /** What is blended comes after what is opaque: skin, which fades at the neck, then corneas, then hair over both. */
 const DRAWN_AFTER: Record<string, number> = { skin: 1, cornea: 2, hair: 3 };
 const EYE_NODES = ['eye.L', 'eye.R'] as const;
@@ -530,7 +531,7 @@ function neckFadeOf(root: Object3D): readonly [number, number] | null {
     lowest = Math.min(lowest, mesh.geometry.boundingBox!.min.y);
   }
   if (lowest > NECK_BELOW) return null;
-  return [lowest * MILLIMETRES + 2, lowest * MILLIMETRES + NECK_FADE];
+  return [lowest * MILLIMETRES + NECK_END, lowest * MILLIMETRES + NECK_FADE];
 }
 
 /** Put an array in place of an attribute, for values that change from frame to frame. */

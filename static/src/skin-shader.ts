@@ -99,11 +99,9 @@ skinOpen = 1.0 - 0.75 * mucosa;
 skinBare = 1.0 - hairCover;
 skinBend = vForm.x;
 skinThin = vForm.y * (1.0 - hairCover);
-// The lamps are flagged off the neck: it goes into the dark first, and only there into the background.
+// The neck leaves the picture as a vignetted portrait does: as it is lit, evenly into the background.
 float intoLight = saturate((vRest.y - neckFade.x) / (neckFade.y - neckFade.x));
-diffuseColor.a *= smoothstep(0.03, 0.78, intoLight);
-float lampLight = smoothstep(0.1, 1.0, intoLight);
-diffuseColor.rgb = mix(vec3(0.028, 0.029, 0.032), diffuseColor.rgb, lampLight * lampLight);
+diffuseColor.a *= smoothstep(0.04, 0.96, intoLight);
 `;
 
 /** Pores without maps, by noise; with maps, the maps' relief and a tile of what is finer than they are. */
@@ -146,7 +144,7 @@ if (mapsShown < 1.0) {
 
 /** Hair is no sheet of skin, and the mouth mirrors no studio: little highlight of their own. */
 const GLOSS = /* glsl */ `
-float gloss = lampLight * mix(0.6 + 0.8 * oil, 1.0, mapsShown) * (1.0 - 0.92 * hairCover) * (1.0 - 0.8 * mucosa);
+float gloss = mix(0.6 + 0.8 * oil, 1.0, mapsShown) * (1.0 - 0.92 * hairCover) * (1.0 - 0.8 * mucosa);
 material.specularColor *= gloss;
 material.specularColorBlended *= gloss;
 material.specularF90 *= gloss;
