@@ -212,16 +212,16 @@ def _colored(
             fine = value_noise((x + bend) / 0.4, y / 3.2, z / 3.2, seed + 32)
             lines = 0.13 * line + 0.10 * fine
             rim = _step(2.6, 0.2, lip_depth)
-            lip_red = 0.46 + 0.05 * (1 - upper) + lines + 0.10 * n3 - 0.12 * rim + 0.07 * (1 - sex)
-            lip_brown = 0.18 + 0.07 * upper + 0.5 * lines + 0.06 * n6 + 0.05 * age
+            lip_red = 0.53 + 0.05 * (1 - upper) + lines + 0.10 * n3 - 0.12 * rim + 0.07 * (1 - sex)
+            lip_brown = 0.23 + 0.07 * upper + 0.5 * lines + 0.06 * n6 + 0.05 * age
             # On dark skin the upper lip and the rim are browner, the lower lip rosy within.
             lip_red *= 1 - dark * (0.22 + 0.2 * upper)
-            lip_brown += dark * (0.16 * upper + 0.20 * rim - 0.16 * (1 - upper) * (1 - rim))
+            lip_brown += dark * (0.24 * upper + 0.24 * rim - 0.12 * (1 - upper) * (1 - rim))
             lip_red *= 1 - 0.18 * age
             red += lip * (lip_red - 0.8 * red)
             brown += lip * (lip_brown - 0.8 * brown)
             # Mucosa has no thick horny layer, whose yellow would make its pink salmon.
-            gold -= lip * (0.26 - 0.10 * dark + 0.5 * gold)
+            gold -= lip * (0.42 + 0.5 * gold)
 
         red = red * (visible + (1 - visible) * 0.6 * lip)
         # Stubble's shadow: hair under the skin, seen through it bluish, then each hair's tip.
@@ -259,7 +259,8 @@ def _colored(
         # Wet and hidden skin.
         deep = (0.34, 0.095, 0.088)
         hole = (0.055, 0.015, 0.012)
-        edge_of_lid = (0.50, 0.20, 0.165)
+        # The edge of a lid is rosy where skin is light, and as brown as the lid where it is dark.
+        edge_of_lid = (0.50 - 0.22 * dark, 0.20 - 0.10 * dark, 0.165 - 0.085 * dark)
         lash = (0.035, 0.018, 0.013)
         for c in range(3):
             light = float(found[n, c])

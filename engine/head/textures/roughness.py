@@ -31,7 +31,8 @@ def roughness(
     broad = broad + 0.012 * noise(places, 9.0, 81) + 0.012 * noise(places, 4.0, 82)
     broad = broad + (0.40 + 0.05 * age - broad) * lip
     broad = broad + (0.66 - broad) * np.clip(0.8 * zones.scalp, 0, 1)
-    broad = broad + (0.30 - broad) * zones.lid
+    # The lids' edges are moist; wet is the tear line, which is a part of its own.
+    broad = broad + (0.44 - broad) * zones.lid**2
     broad = broad + (0.24 - broad) * zones.mouth
     pits = np.clip(-heights * 1.6, -0.05, 0.12)
     return np.asarray(np.clip(texels.carried(broad) + pits, 0.05, 1), dtype=np.float32)

@@ -21,6 +21,8 @@ from ..recipe import Recipe
 
 LIPS = ("upper_lip", "lower_lip")
 LIPS_INSIDE = ("upper_lip_inner", "lower_lip_inner")
+LID_MELANIN = 0.75
+"""How much browner than the face the upper lids are on the darkest skin."""
 NO_HAIR = ("upper_lip", "lower_lip", "nose", "nose_tip", "ala", "columella", "ear")
 
 
@@ -158,7 +160,7 @@ def zones_of(surface: Surface, recipe: Recipe) -> Zones:
         + 0.06 * neck * smoothstep(0, 50, z)
         - 0.07 * spot(0, 52, 44, 22),
         melanin=0.08 * spot(31, -12, 16, 7)
-        + 0.10 * upper_lid
+        + (0.10 + LID_MELANIN * recipe.skin) * upper_lid
         + 0.08 * spot(0, 62, 60, 16)
         + 0.07 * spot(0, -93, 16, 5)
         + 0.05 * spot(0, -78, 34, 24)
@@ -179,7 +181,9 @@ def zones_of(surface: Surface, recipe: Recipe) -> Zones:
             0,
             1,
         ),
-        lashes=surface.mask("upper_lid_margin") * smoothstep(-1, 1.5, y)
+        # Between the roots of the upper lashes the lid lies in their shade.
+        lashes=np.clip(1.25 * surface.mask("upper_lid_margin", blur=3), 0, 1)
+        * smoothstep(-1, 1.5, y)
         + 0.25 * surface.mask("lower_lid_margin"),
         beard=beard,
         scalp=scalp_cover(surface.places, recipe) * (1 - surface.mask("ear", blur=1)),
