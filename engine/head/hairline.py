@@ -47,7 +47,7 @@ CROWN = np.array([0.0, 106.0, -46.0])
 CROWN_BALD = (24.0, 58.0)
 """A receding head is bare this near to its crown, and full so far away, mm."""
 
-STYLE_COVER = {"bald": 0.34, "buzz": 0.74}
+STYLE_COVER = {"bald": 0.34, "buzz": 0.95}
 """How dark the scalp is shaded where hair is cut off; elsewhere it is hidden."""
 HIDDEN_SCALP = 0.94
 

@@ -109,6 +109,11 @@ def test_bald_heads_keep_a_shadow(head: Head) -> None:
     assert 0.2 < scalp_cover(crown, recipe).mean() < 0.5
 
 
+def test_hair_cut_to_millimetres_still_hides_the_scalp() -> None:
+    crown = np.array([[0.0, 105.0, 0.0], [10.0, 110.0, -20.0]])
+    assert scalp_cover(crown, Recipe(hair_style="buzz")).min() > 0.9
+
+
 def test_the_hairline_goes_back_with_age_in_men_only() -> None:
     assert recession(Recipe(sex=1.0, age=70)) > recession(Recipe(sex=1.0, age=25)) + 0.2
     assert recession(Recipe(sex=0.0, age=70)) == 0
