@@ -71,7 +71,7 @@ void RE_Direct_Skin(
   diffuse += down * irradiance * RECIPROCAL_PI * mix(material.diffuseContribution, vec3(0.8, 0.62, 0.5), 0.5);
   // Light from behind comes through red, and most where one looks towards it.
   float towards = pow3(saturate(-dot(geometryViewDir, normalize(light + 0.35 * skinSmooth))));
-  float behind = saturate(-dot(skinSmooth, light)) * (0.10 + 0.42 * towards);
+  float behind = saturate(-dot(skinSmooth, light)) * (0.08 + 0.26 * towards);
   diffuse += skinThin * behind * directLight.color * RECIPROCAL_PI * vec3(0.6, 0.15, 0.07)
     * sqrt(material.diffuseContribution);
   reflectedLight.directDiffuse += diffuse;

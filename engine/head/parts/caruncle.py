@@ -24,6 +24,8 @@ OUTER_FILLET = 1.7
 """How widely the outer corner's bed runs into the ball, mm."""
 OUTER_RISE = 0.6
 """How much farther forward that bed lies towards the ball, mm."""
+INNER_SHADE, OUTER_SHADE = 0.66, 0.68
+"""How much light reaches the flesh between the lids, at most."""
 
 # Linear RGB.
 CARUNCLE = np.array([0.52, 0.205, 0.165])
@@ -85,7 +87,9 @@ def _inner_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
     )
     to_ball = smoothstep(0.7, 1.0, along + 0 * across)[..., None]
     colors = colors + (0.7 * SCLERA_CORNER - colors) * to_ball
-    return _sheet(x, y, depth), colors.reshape(-1, 3)
+    # The lids shade it as they do the ball, and the upper one more.
+    shade = INNER_SHADE * (1 - 0.3 * smoothstep(-0.1, 0.6, across + 0 * along))[..., None]
+    return _sheet(x, y, depth), (shade * colors).reshape(-1, 3)
 
 
 def _outer_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
@@ -111,8 +115,8 @@ def _outer_corner(lid_edge: FloatArray) -> tuple[Mesh, FloatArray]:
     depth = depth - 0.5 * OUTER_FILLET * smoothstep(0.45, 0.0, along)
     to_bed = smoothstep(0.2, 0.9, along + 0.03 * np.abs(height))[..., None]
     colors = SCLERA_CORNER + (OUTER_BED - SCLERA_CORNER) * to_bed
-    # Lids shade it from both sides, and meet where it ends.
-    shade = 0.46 - 0.26 * smoothstep(0.2, 1.0, along + 0 * across)
+    # Lids shade it from both sides, and meet where it ends; it begins as bright as the ball.
+    shade = OUTER_SHADE - (OUTER_SHADE - 0.2) * smoothstep(0.0, 0.9, along + 0 * across)
     shade = (shade * (1 - 0.4 * smoothstep(0.0, 0.8, across + 0 * along)))[..., None]
     return _sheet(x, y, depth), (shade * colors).reshape(-1, 3)
 
