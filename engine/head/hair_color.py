@@ -25,6 +25,8 @@ NATURAL: Mapping[str, tuple[float, float, float]] = {
 }
 GRAY = np.array([0.43, 0.43, 0.43])
 """A hair without pigment among others, in shade of its neighbours."""
+GRAY_AMONG = 1.6
+"""A clump looks greyed by this power of its share of grey hairs: few of them hide in the shade."""
 SHORN = ("bald", "buzz", "receding")
 """Styles through which light reaches the scalp; under all others, of it:"""
 UNDER_LONG_HAIR = 0.4
@@ -65,7 +67,8 @@ def strand_colors(
     shade = np.exp(noise.normal(0, tone, count))[:, None]
     warmth = 1 + np.outer(noise.normal(0, 0.06, count), [1.0, 0.1, -0.9])
     single = (noise.uniform(size=count) < recipe.grayness).astype(float)
-    grey = recipe.grayness + spread * (single - recipe.grayness)
+    among = recipe.grayness**GRAY_AMONG
+    grey = among + spread * (single - among)
     pigmented = natural * shade * warmth
     return np.asarray(pigmented + grey[:, None] * (GRAY * shade**0.5 - pigmented))
 

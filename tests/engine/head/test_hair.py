@@ -152,6 +152,15 @@ def test_greying_mixes_single_hairs() -> None:
     assert hair_color(recipe).mean() > 2 * hair_color(Recipe(hair_color="dark_brown")).mean()
 
 
+def test_a_few_grey_hairs_leave_black_hair_black() -> None:
+    noise = np.random.default_rng(2)
+    recipe = Recipe(hair_color="black", grayness=0.09)
+    clumps = strand_colors(recipe, 4_000, noise, spread=0.04)
+    assert clumps.mean() < 2.2 * np.mean(NATURAL["black"])
+    white = strand_colors(replace(recipe, grayness=1.0), 4_000, noise, spread=0.15)
+    assert white.mean() > 0.35
+
+
 def test_fair_people_have_darker_brows() -> None:
     blond = Recipe(hair_color="blond")
     assert brow_color(blond).mean() < 0.6 * hair_color(blond).mean()
