@@ -165,7 +165,8 @@ def sheet(
         ),
     ] = "three-quarter",
     only: Annotated[
-        str, typer.Option(help="Names to show, comma separated: AU12,happiness,rest,6C+12D.")
+        str,
+        typer.Option(help="Names to show, comma separated: AU12,fear,fear@0.4,rest,6C+12D."),
     ] = "",
     whole: Annotated[
         bool, typer.Option("--whole", help="Show the head, not the face alone.")

@@ -6,7 +6,7 @@ import io
 import re
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -52,11 +52,13 @@ class Pose:
         label: Written under the picture.
         controls: Body of a PUT to the puppet layer.
         emotion: Label of an emotion instead.
+        intensity: Of the emotion.
     """
 
     label: str
     controls: dict[str, Any]
     emotion: str | None = None
+    intensity: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,7 @@ def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
 
     Args:
         rig: What the API says of the rig.
-        only: Names of units or emotions, or FACS strings.
+        only: Names of units or emotions, FACS strings, or emotions weakened: "happiness@0.4".
     """
     poses = {"rest": Pose("rest", {})}
     for unit in rig["action_units"]:
@@ -167,7 +169,23 @@ def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
     if not only:
         return list(poses.values())
     words = {word: emotion["name"] for emotion in rig["emotions"] for word in emotion["synonyms"]}
-    return [poses.get(words.get(name, name), Pose(name, {"facs": name})) for name in only]
+    return [_pose_of(name, poses, words) for name in only]
+
+
+def _pose_of(name: str, poses: dict[str, Pose], words: dict[str, str]) -> Pose:
+    asked, at, weakened = name.partition("@")
+    pose = poses.get(words.get(asked, asked))
+    if not at:
+        return pose or Pose(name, {"facs": name})
+    try:
+        intensity = float(weakened)
+    except ValueError:
+        intensity = float("nan")
+    if pose is None or pose.emotion is None or not 0.0 < intensity <= 1.0:
+        raise SheetRefused(
+            f"{name!r} is no emotion with an intensity above 0 and up to 1, such as happiness@0.4."
+        )
+    return replace(pose, label=f"{pose.emotion} {weakened}", intensity=intensity)
 
 
 def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[str, bytes]]:
@@ -218,7 +236,7 @@ def _command(page: Page, session: str, pose: Pose) -> int:
     emptied = _call(page, "PUT", f"{session}/controls", {**held, "layer": "emotion"})
     answer = _call(page, "PUT", f"{session}/controls", {**held, **pose.controls})
     if pose.emotion is not None:
-        body = {"label": pose.emotion, "fade_in": 0.15}
+        body = {"label": pose.emotion, "fade_in": 0.15, "intensity": pose.intensity}
         answer = _call(page, "POST", f"{session}/emotions", body)
     return int(max(emptied["tick"], answer["tick"]))
 

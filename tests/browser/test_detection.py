@@ -57,7 +57,7 @@ def photograph(person: str, folder: Path, poses: Sequence[str], views: str) -> N
     """Put a picture of each pose from each view into `folder`."""
     command = [sys.executable, "-m", "service", "sheet", "--rig", person, "-o", str(folder)]
     done = subprocess.run(
-        [*command, "--only", ",".join(poses), "--view", views, "--size", "220"],
+        [*command, "--only", ",".join(poses), "--view", views, "--size", "160"],
         cwd=Path(__file__).parents[2],
         capture_output=True,
         text=True,

@@ -35,6 +35,17 @@ def test_a_sheet_has_only_what_is_asked() -> None:
     assert poses[1].controls == {"facs": "1C+L12D"}
 
 
+def test_a_sheet_shows_weak_emotions() -> None:
+    (pose,) = poses_of(RIG, ("joy@0.4",))
+    assert (pose.label, pose.emotion, pose.intensity) == ("happiness 0.4", "happiness", 0.4)
+
+
+@pytest.mark.parametrize("name", ["joy@", "joy@2", "joy@nan", "AU1@0.5", "6C+12D@0.5"])
+def test_a_sheet_refuses_an_intensity_without_sense(name: str) -> None:
+    with pytest.raises(SheetRefused, match=r"such as happiness@0\.4"):
+        poses_of(RIG, (name,))
+
+
 def test_pictures_are_laid_out_in_rows() -> None:
     colors = [(255, 0, 0), (0, 255, 0), (0, 0, 255)]
     sheet = tile([("name", png(color)) for color in colors], columns=2, size=100)
