@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from .arrays import FloatArray, IntArray
+from .cover import showing
 from .quality import asymmetry, folded_triangles, roughness, visible_triangles
 from .rig import Rig
 from .simulator import Simulator
@@ -39,6 +40,7 @@ class Flesh:
         drawn_roughness: The same over the visible vertices of the drawn skin.
         asymmetry: Greatest difference of left and right, mm.
         speed: Greatest speed of a node, mm/s.
+        through: Vertices of teeth, gums, tongue and eyeballs that stand before the skin, by part.
     """
 
     inverted: int
@@ -50,6 +52,7 @@ class Flesh:
     drawn_roughness: float
     asymmetry: float
     speed: float
+    through: Mapping[str, int]
 
 
 def random_mixes(rig: Rig, count: int, seed: int) -> list[Keyframe]:
@@ -79,7 +82,7 @@ def examine(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 1.0) ->
     result = []
     for name in names:
         snapshot = simulator.snapshot(name)
-        displacements = simulator.frame(name).displacements
+        displacements = snapshot.frame.displacements
         before, after = element_volumes(rest, sheet), element_volumes(snapshot.x, sheet)
         change = after.sum(axis=0) - before.sum(axis=0)
         result.append(
@@ -96,6 +99,7 @@ def examine(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 1.0) ->
                 drawn_roughness=_drawn_roughness(rig, displacements, smooth),
                 asymmetry=asymmetry(rig, displacements),
                 speed=float(np.linalg.norm(snapshot.v, axis=0).max()),
+                through=showing(rig, snapshot.frame),
             )
         )
     return result

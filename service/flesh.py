@@ -29,7 +29,7 @@ LACKING: Mapping[str, Mapping[str, object]] = {
     "no volume of elements": {"skin_volume": 0.0},
     "no hold on thin columns": {"thin_skin_grip": False},
     "no fat columns": {"fat_pressure": 0.0},
-    "no plate": {"plate": 0.0},
+    "a bending plate besides": {"plate": 20.0},
     "no smoothing of forces": {"force_smoothing": 0},
     "no ligament": {"ligament": 1.0},
     "bare springs": {
@@ -37,7 +37,6 @@ LACKING: Mapping[str, Mapping[str, object]] = {
         "skin_volume": 0.0,
         "thin_skin_grip": False,
         "fat_pressure": 0.0,
-        "plate": 0.0,
         "force_smoothing": 0,
         "ligament": 1.0,
     },
@@ -93,6 +92,7 @@ def _row(flesh: Flesh) -> dict[str, Any]:
         "drawn_roughness": round(flesh.drawn_roughness, 3),
         "asymmetry_mm": round(flesh.asymmetry, 3),
         "speed_mm_s": round(flesh.speed, 3),
+        "through": dict(flesh.through),
     }
 
 
@@ -110,6 +110,7 @@ def _summary(mixed: Sequence[Flesh]) -> dict[str, float]:
         "mean_drawn_roughness": round(float(np.mean([f.drawn_roughness for f in mixed])), 3),
         "above_half_a_mm_per_s": sum(f.speed > 0.5 for f in mixed),
         "greatest_speed_mm_s": most([f.speed for f in mixed]),
+        "with_anything_through_the_skin": sum(bool(f.through) for f in mixed),
     }
 
 
@@ -162,8 +163,8 @@ def flesh_markdown(figures: dict[str, Any]) -> str:
     """Return the figures as Markdown tables."""
     lines = [
         "| expression | inverted | least element | volume | worst region | folds | roughness "
-        "| drawn | left-right, mm | mm/s | path, mm |",
-        "|---|---|---|---|---|---|---|---|---|---|---|",
+        "| drawn | left-right, mm | mm/s | path, mm | through |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for name, row in figures["expressions"].items():
         folds = ", ".join(f"{count} {region}" for region, count in row["folds"].items()) or "0"
@@ -172,7 +173,8 @@ def flesh_markdown(figures: dict[str, Any]) -> str:
             f"| {row['volume_percent']:+.1f} % "
             f"| {row['worst_region']} {row['worst_region_percent']:+.0f} % | {folds} "
             f"| {row['roughness']:.3f} | {row['drawn_roughness']:.3f} "
-            f"| {row['asymmetry_mm']:.2f} | {row['speed_mm_s']:.2f} | {row['path_mm']:.2f} |"
+            f"| {row['asymmetry_mm']:.2f} | {row['speed_mm_s']:.2f} | {row['path_mm']:.2f} "
+            f"| {sum(row['through'].values())} |"
         )
     mixes = figures["mixes"]
     lines += ["", "| random mixes of 2 to 5 units | |", "|---|---|"]
