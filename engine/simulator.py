@@ -15,6 +15,7 @@ from .dynamics import Pull, Skull, Workspace, add_basis_forces, advance, workspa
 from .errors import InvalidValue, UnknownName
 from .force_basis import ride_jaw
 from .frame import Frame, Pose
+from .lids import lids_meeting, lids_with_gaze, lids_with_skin
 from .mixing import Mixer
 from .rig import Model, Rig
 from .skull import pose_held, pose_skull
@@ -28,16 +29,6 @@ ARRIVED = 1.0e-4
 """Distance, activation or degrees, at which a lagging channel takes its command's value."""
 FARTHEST_MM = 90.0
 """Displacement that no face reaches: beyond it the simulation has diverged."""
-
-
-LID_FOLLOWS = {"down": (0.80, 0.25), "up": (0.40, 0.10)}
-"""Turn of upper and lower lid per degree that the eye looks down or up.
-
-The upper lid goes with the gaze, nearly all the way down and half the way up, the lower one a
-little (Becker and Fuchs 1988); the shares are smaller here, for a lid at rest covers less iris.
-"""
-SHUT_ANGLE = 40.0
-"""Turn of the upper lid at which it is shut, degrees: a shut lid does not follow the eye."""
 
 
 @dataclass
@@ -213,7 +204,8 @@ class Simulator:
             UnknownName: If there is no such face.
         """
         state = self._face(face)
-        self._pose(state)
+        if state.skull is None:
+            self._pose(state)
         assert state.skull is not None
         return Snapshot(
             assembly=self.assembly,
@@ -286,9 +278,11 @@ class Simulator:
         """Return jaw pitch, yaw, thrust and the four lid angles, shape (7,)."""
         m = self.rig.channels.muscle_count
         angles = np.einsum("m,msl->sl", state.signals[:m], self.assembly.lid_angles)
-        angles = lids_with_gaze(
-            angles, float(state.signals[self.rig.channels.index("gaze", "pitch")])
-        )
+        pitch = float(state.signals[self.rig.channels.index("gaze", "pitch")])
+        lids, p = self.assembly.tissue.lids, self.rig.parameters
+        angles = lids_with_gaze(angles, pitch)
+        angles = lids_with_skin(angles, lids, state.x, (p.upper_lid_skin, p.lower_lid_skin))
+        angles = lids_meeting(angles, lids.opening)
         return np.concatenate([state.signals[m : m + 3], angles.ravel()])
 
     def _forces(self, state: FaceState) -> tuple[Skull, Pull]:
@@ -395,21 +389,3 @@ class Simulator:
         rigid = self.rig.jaw.move(followers, ones, pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)
         following = head.follow @ sheet + head.follow_jaw[:, None] * (rigid - followers)
         return np.concatenate([sheet, following])
-
-
-def lids_with_gaze(angles: FloatArray, pitch: float) -> FloatArray:
-    """Return the turn of the lids as the eyes look up or down, degrees, shape (2, 2).
-
-    Args:
-        angles: By the lids' own muscles: side, then upper (positive closes) and lower (positive
-            raises).
-        pitch: Of both eyes, degrees, up positive.
-    """
-    if pitch == 0.0:
-        return angles
-    upper, lower = LID_FOLLOWS["down" if pitch < 0.0 else "up"]
-    followed = angles.copy()
-    share = 1.0 - np.clip(angles[:, 0] / SHUT_ANGLE, 0.0, 1.0)
-    followed[:, 0] -= share * upper * pitch
-    followed[:, 1] += share * lower * pitch
-    return followed

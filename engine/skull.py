@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -73,10 +74,11 @@ def turn_lids(lids: Lids, points: FloatArray, angles: FloatArray) -> FloatArray:
 
 
 def _only(lids: Lids, keep: BoolArray) -> Lids:
-    return Lids(
-        lids.nodes[keep],
-        lids.channel[keep],
-        lids.share[keep],
-        lids.centers[keep],
-        lids.tarsal[keep],
+    return replace(
+        lids,
+        nodes=lids.nodes[keep],
+        channel=lids.channel[keep],
+        share=lids.share[keep],
+        centers=lids.centers[keep],
+        tarsal=lids.tarsal[keep],
     )

@@ -31,9 +31,12 @@ LID_SHARE = {"EB": 1.0, "E0": 1.0, "E1": 1.0, "E2": 0.5}
 """Share of the lid's angle that each ring's skull side turns by."""
 TARSAL_RINGS = ("E0", "E1")
 """Rings that are cartilage: moved with the lid, not by forces."""
-CANTHAL_HOLD = {1: 0.60, 6: 0.90, 7: 0.75}
+CANTHAL_HOLD = {1: 0.62, 6: 0.91, 7: 0.76}
 """Greatest turn, as a share of the middle's, by the spokes next to the canthi: farther, the skin
 folds over its joined end."""
+SKIN_RING = "E3"
+SKIN_SPOKES = range(2, 7)
+"""Skin of the upper lid whose way about the eye is the lid skin's; the lower lid's lies below."""
 LID_SPOKES = 16
 """Points of an eye ring run from 0, inner canthus, over 4, top, and 8, outer canthus, to 12."""
 
@@ -48,6 +51,11 @@ class Lids:
         share: Turn about the eye's x axis per degree of lid angle, signed, shape (k,).
         centers: Eye centre of each, mm, shape (k, 3).
         tarsal: Nodes that are moved, all three layers, shape (k,).
+        skin: Nodes of the skin that pushes the lids, shape (s,).
+        skin_channel: Which angle each belongs to, shape (s,).
+        skin_place: Their place from the eye's centre at rest, y and z, mm, shape (2, s).
+        skin_center: The eye's centre, y and z, mm, shape (2, s).
+        opening: Angle between the lids of the left and the right eye at rest, degrees, shape (2,).
     """
 
     nodes: IntArray
@@ -55,6 +63,25 @@ class Lids:
     share: FloatArray
     centers: FloatArray
     tarsal: BoolArray
+    skin: IntArray
+    skin_channel: IntArray
+    skin_place: FloatArray
+    skin_center: FloatArray
+    opening: FloatArray
+
+    def skin_angles(self, x: FloatArray) -> FloatArray:
+        """Return how far the skin around each lid has gone about the eye, degrees, shape (4,).
+
+        Signed as the lids' angles are: positive where the skin would close the eye.
+
+        Args:
+            x: Positions of the nodes, mm, shape (3, nodes).
+        """
+        (y0, z0), (y, z) = self.skin_place, x[1:, self.skin] - self.skin_center
+        turned = np.degrees(np.arctan2(y * z0 - z * y0, y * y0 + z * z0))
+        signed = np.where(self.skin_channel % 2 == 0, -turned, turned)
+        count = np.maximum(np.bincount(self.skin_channel, minlength=4), 1)
+        return np.asarray(np.bincount(self.skin_channel, signed, minlength=4) / count)
 
 
 def ring_and_spoke(name: str) -> tuple[str, int, str]:
@@ -67,7 +94,7 @@ def ring_and_spoke(name: str) -> tuple[str, int, str]:
 def lids_of(head: Head) -> Lids:
     """Return the lid nodes of `head`; none where it has no eyes."""
     nodes, channel, share, centers, tarsal = [], [], [], [], []
-    fissure = _fissure(head)
+    fissure, opening = _fissure(head)
     for node, name in enumerate(head.names[: head.sheet_count]):
         ring, spoke, side = ring_and_spoke(name)
         if ring not in LID_SHARE or not head.eyes:
@@ -85,28 +112,49 @@ def lids_of(head: Head) -> Lids:
         np.array(share),
         np.array(centers).reshape(-1, 3),
         np.array(tarsal, dtype=bool),
+        *_pushing_skin(head),
+        np.array([opening.get(side, math.inf) for side in "LR"]),
     )
 
 
-def _fissure(head: Head) -> dict[str, FloatArray]:
-    """Return the opening at each spoke as a share of that in the middle, by side, shape (17,).
+def _pushing_skin(head: Head) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """Return nodes that push lids, the angle each pushes, their places and the eyes' centres."""
+    nodes, channel, centers = [], [], []
+    for node, name in enumerate(head.names[: head.sheet_count]):
+        ring, spoke, side = ring_and_spoke(name)
+        upper = spoke in SKIN_SPOKES
+        if ring != SKIN_RING or not head.eyes or not (upper or LID_SPOKES - spoke in SKIN_SPOKES):
+            continue
+        nodes.append(node)
+        channel.append((0 if upper else 1) + (2 if side == "R" else 0))
+        centers.append(head.eyes[1 if side == "R" else 0].center[1:])
+    index = np.array(nodes, dtype=np.int64)
+    center = np.array(centers).reshape(-1, 2).T
+    return index, np.array(channel, dtype=np.int64), head.points[index, 1:].T - center, center
+
+
+def _fissure(head: Head) -> tuple[dict[str, FloatArray], dict[str, float]]:
+    """Return by side the opening at each spoke and that in the middle, degrees.
+
+    The former is a share of the latter, shape (17,).
 
     Lids that turn in this proportion meet along their whole length at once; at the canthi, where
     they are joined, they do not turn.
     """
     index = {name: node for node, name in enumerate(head.names) if name}
-    openings = {}
+    openings, middles = {}, {}
     for side, eye in zip("LR", head.eyes, strict=False):
         opening = np.zeros(LID_SPOKES + 1)
         for spoke in range(1, LID_SPOKES // 2):
             ends = (f"E1_{spoke}.{side}", f"E1_{LID_SPOKES - spoke}.{side}")
             above, below = (head.points[index[end]] - eye.center for end in ends)
             opening[spoke] = math.atan2(above[1], above[2]) - math.atan2(below[1], below[2])
-        share = opening / max(opening[LID_SPOKES // 4], 1e-9)
+        middle = opening[LID_SPOKES // 4]
+        share = opening / max(middle, 1e-9)
         for spoke, most in CANTHAL_HOLD.items():
             share[spoke] = min(share[spoke], most)
-        openings[side] = share
-    return openings
+        openings[side], middles[side] = share, math.degrees(middle)
+    return openings, middles
 
 
 def contacts_of(head: Head) -> Contacts:
