@@ -123,9 +123,9 @@ def _turn(
 
 
 LANDMARKS: tuple[Landmark, ...] = (
-    Landmark("AU1", "inner brow up", 5, 8, lambda f: float(f.u(INNER_BROW)[1])),
-    Landmark("AU2", "outer brow up", 5, 8, lambda f: float(f.u(OUTER_BROW)[1])),
-    Landmark("AU4", "inner brow down", 4, 5, lambda f: -float(f.u(INNER_BROW)[1])),
+    Landmark("AU1", "inner brow up", 5, 8, lambda f: float(f.u(INNER_BROW)[1]), full=7.0),
+    Landmark("AU2", "outer brow up", 5, 8, lambda f: float(f.u(OUTER_BROW)[1]), full=7.0),
+    Landmark("AU4", "inner brow down", 4, 5, lambda f: -float(f.u(INNER_BROW)[1]), full=4.5),
     Landmark("AU4", "inner brow medial", 2, 3, lambda f: -float(f.u(INNER_BROW)[0]), False),
     Landmark("AU5", "upper lid up", 2, 3, lambda f: float(f.u(UPPER_LID)[1])),
     Landmark("AU6", "cheek up", 3, 5, lambda f: float(f.u(CHEEK)[1])),
@@ -158,7 +158,7 @@ LANDMARKS: tuple[Landmark, ...] = (
     Landmark("AU25", "lip gap", 4, 6, lambda f: f.distance(LIP_TOP, LIP_BOTTOM)),
     Landmark("AU26", "lip gap", 15, 20, lambda f: f.distance(LIP_TOP, LIP_BOTTOM)),
     Landmark("AU27", "lip gap", 30, 36, lambda f: f.distance(LIP_TOP, LIP_BOTTOM), full=30.5),
-    Landmark("AU28", "lips back", 3, 6, lambda f: -f.lips_forward(), full=4.2),
+    Landmark("AU28", "lips back", 3, 6, lambda f: -f.lips_forward(), full=3.3),
     Landmark("AU29", "chin forward", 4, 8, lambda f: float(f.u(CHIN)[2])),
     Landmark("AU30", "chin sideways", 6, 12, lambda f: float(f.u(CHIN)[0])),
     Landmark("AU33", "cheek out", 2, 8, lambda f: f.along(HOLLOW, *OUT_OF_CHEEK), full=4.5),

@@ -21,9 +21,18 @@ LAXITY_OF_FIBRES = 0.35
 """Share of the stiffness below the strain threshold, and of the ties to the skull, that wholly lax
 skin has lost; elasticity halves from 20 to 80 years (Cua, Wilhelm, Maibach 1990)."""
 THROAT_REGIONS = ("submental", "neck")
-THROAT_TENSION = 3.0
-"""How much more than the face's the skin under the chin is pre-tensioned, over the platysma: with
-as little tension as the rest a wide open mouth comes to rest in one of two shapes, 9 mm apart."""
+TAUT: Mapping[str, float] = {
+    "submental": 3.3,
+    "neck": 1.7,
+    "forehead": 2.5,
+    "scalp": 2.0,
+}
+"""How much more than the face's the skin of some regions is pre-tensioned.
+
+Over the platysma: with as little tension as the rest a wide open mouth comes to rest in one of two
+shapes, 9 mm apart. Over the galea: a raised brow pushes the middle of the forehead 3 mm aside, to
+the left or to the right after what went before.
+"""
 MOST_TENSION = 0.4
 """Greatest pre-tension anywhere; the same bound as on what an edit asks for."""
 SPREAD_MM = 18.0
@@ -83,7 +92,7 @@ def fields_of(head: Head, sheet: Sheet, parameters: TissueParameters) -> TissueF
         slack=1.0 - LAXITY_OF_FIBRES * laxity,
         pretension=np.minimum(
             p.pretension
-            * _throat_tension(sheet)
+            * _tautness(sheet)
             * _region_factor(sheet, p.region_pretension)
             * (1.0 - LAXITY_OF_TENSION * laxity),
             MOST_TENSION,
@@ -147,9 +156,9 @@ def _region_factor(sheet: Sheet, factors: Mapping[str, float]) -> FloatArray:
     return scale
 
 
-def _throat_tension(sheet: Sheet) -> FloatArray:
-    share = np.maximum(*(region_share(sheet, region) for region in THROAT_REGIONS))
-    return np.asarray(1.0 + (THROAT_TENSION - 1.0) * share)
+def _tautness(sheet: Sheet) -> FloatArray:
+    by_region = [1.0 + (factor - 1.0) * region_share(sheet, name) for name, factor in TAUT.items()]
+    return np.asarray(np.max(by_region, axis=0))
 
 
 def _region_value(sheet: Sheet, values: Mapping[str, float]) -> FloatArray:

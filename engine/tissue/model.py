@@ -42,11 +42,8 @@ THIN_MM = 0.6
 PRESSED, PRESSED_THIN = 0.3, -0.2
 """Least share of its volume that an element keeps in any expression, by the length of its columns:
 what masses count."""
-THROAT_ORDER = 2.5
-"""How much harder than elsewhere elements under the chin resist being pressed flat."""
-THROAT_VOLUME = 0.35
-"""Share of the volume modulus under the chin, whose skin is loose: as stiff as the rest it would
-fold when the jaw opens wide."""
+THROAT_VOLUME = 3.2
+"""Factor on the volume modulus under the chin, where a wide open jaw pushes the skin together."""
 LEAST_ELEMENT_MM = 0.6
 """Thickness from which an element's stiffness is counted; a flat one would hardly resist."""
 SPARED_SHARE = 2.1
@@ -295,17 +292,15 @@ def _prisms(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Pr
         np.cross(middle[:, 1] - middle[:, 0], middle[:, 2] - middle[:, 0]), axis=1
     )
     throat = np.maximum(*(region_share(sheet, region) for region in THROAT_REGIONS))
-    under_chin = throat[corners % n].max(axis=1)
-    loose = 1.0 - (1.0 - THROAT_VOLUME) * under_chin
-    firm = 1.0 + (THROAT_ORDER - 1.0) * under_chin
+    firm = 1.0 + (THROAT_VOLUME - 1.0) * throat[corners % n].max(axis=1)
     thickness = np.maximum(volume / size, LEAST_ELEMENT_MM)
     # Of a lid's plate all corners are moved: it cannot lose volume.
     keep = np.tile(~_held(head)[upper].all(axis=1), 2) & (volume > 0.0) & (p.skin_volume > 0.0)
     return Prisms(
         corners[keep].astype(np.int32),
-        (p.skin_volume * loose * size / area0 * thickness**2)[keep],
+        (p.skin_volume * firm * size / area0 * thickness**2)[keep],
         volume[keep],
-        (p.layer_order * firm / loose)[keep],
+        (p.layer_order / firm)[keep],
         p.layer_gap,
     )
 

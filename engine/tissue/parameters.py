@@ -63,10 +63,13 @@ class TissueParameters:
         layer_gap: Share of its volume below which an element counts as pressed flat.
         thin_skin_grip: Whether a muscle takes hold of the whole column where the layers lie close
             together, as in the corner of the lips, and not of its lowest node only.
-        plate: Bending stiffness of the epidermis.
+        plate: Bending stiffness of the epidermis. Off here too: at 20 the skin looks no smoother
+            and a substep costs a tenth more.
         force_smoothing: Passes that smooth the muscles' force over the skin.
         fat_pressure: Pressure modulus of the fat columns of cheek and lips.
         ligament: Factor on the normal tie along the nasolabial fold.
+        upper_lid_skin, lower_lid_skin: The skin's share of the stiffness that holds a lid's plate,
+            the rest being its muscles': a raised cheek lifts the lower lid, a brow the upper one.
         cross_diagonals: Springs along both diagonals of a quad, not only along edges.
         force_quadrature: Muscle weights integrated over each quad, not sampled at nodes.
         regional_depth: Skin depth by region; off: `uniform_depth` everywhere.
@@ -106,13 +109,15 @@ class TissueParameters:
     lid_lag: float = 0.010
     pretension: float = 0.12
     skin_volume: float = 100.0
-    layer_order: float = 8.0
+    layer_order: float = 12.0
     layer_gap: float = 0.8
     thin_skin_grip: bool = True
-    plate: float = 20.0
+    plate: float = 0.0
     force_smoothing: int = 2
     fat_pressure: float = 120.0
     ligament: float = 3.0
+    upper_lid_skin: float = 0.1
+    lower_lid_skin: float = 0.3
     cross_diagonals: bool = True
     force_quadrature: bool = True
     regional_depth: bool = True
@@ -222,6 +227,8 @@ LIMITS: Mapping[str, tuple[float, float]] = {
     "force_smoothing": (0, 20),
     "fat_pressure": (0.0, 600.0),
     "ligament": (0.0, 20.0),
+    "upper_lid_skin": (0.0, 0.8),
+    "lower_lid_skin": (0.0, 0.8),
     "uniform_depth": (2.0, 40.0),
     "muscle_strength": (0.0, 2.0),
 }
@@ -291,6 +298,8 @@ PAPER_PARAMETERS = TissueParameters(
     force_smoothing=0,
     fat_pressure=0.0,
     ligament=1.0,
+    upper_lid_skin=0.0,
+    lower_lid_skin=0.0,
     thin_skin_grip=False,
     cross_diagonals=False,
     force_quadrature=False,
