@@ -6,7 +6,22 @@ import pytest
 
 from engine import InvalidValue, Keyframe
 from engine.combination import Combination, together
-from engine.measure import INNER_BROW, LIP_BOTTOM, LIP_TOP, OUTER_BROW, UPPER_LID, settle
+from engine.measure import (
+    CHEEK,
+    CORNER,
+    HOLLOW,
+    INNER_BROW,
+    LIP_BOTTOM,
+    LIP_TOP,
+    LOWER_LID,
+    LOWER_LIP,
+    OUT_OF_CHEEK,
+    OUTER_BROW,
+    UPPER_LID,
+    UPPER_LIP,
+    Face,
+    settle,
+)
 
 OPEN = Combination(("AU25", "AU26"), yields={"AU25": 4.0, "AU26": 16.0})
 BROWS = Combination(("AU1", "AU4"), factors={"AU4": {"depressor": 0.0}}, adds={"frontalis": 0.5})
@@ -97,3 +112,81 @@ def test_combined_looks_on_the_face(standard_rig):
     gaps = {name: faces[name].distance(LIP_TOP, LIP_BOTTOM) for name in ("26", "25+26")}
     assert gaps["25+26"] == pytest.approx(gaps["26"], abs=0.5)
     assert faces["43+45"].displacements == pytest.approx(faces["43"].displacements, abs=0.01)
+
+
+@pytest.fixture(scope="module")
+def looks(standard_rig):
+    """The face of units at 1, by their numbers: "6+12"."""
+    names = (
+        "1 2 4 5 6 7 9 10 12 15 18 20 22 23 24 26 33 34 43 1+2 2+4 4+5 6+12 6+7 9+10 15+17 23+24 "
+        "18+22 18+23 5+43 33+34 12+25 12+26 20+25"
+    ).split()
+    units = [{f"AU{unit}": 1.0 for unit in name.split("+")} for name in names]
+    faces = settle(standard_rig, [Keyframe(action_units=one) for one in units])
+    return dict(zip(names, faces, strict=True))
+
+
+def up(face: Face, point: str) -> float:
+    return float(face.u(point)[1])
+
+
+def gap(face: Face) -> float:
+    return face.distance(LIP_TOP, LIP_BOTTOM)
+
+
+def red(face: Face) -> float:
+    """How far the red of the lips has become narrower, mm."""
+    return -face.opening("M2_1.L", "M2_9.L")
+
+
+def fissure(face: Face) -> float:
+    return face.gap(UPPER_LID, LOWER_LID)
+
+
+def test_brows_combine_as_the_manual_says(looks):
+    # 1+2: one curve; the lid goes with the brow once.
+    assert min(up(looks["1+2"], INNER_BROW), up(looks["1+2"], OUTER_BROW)) > 6.0
+    alone = max(up(looks["1"], UPPER_LID), up(looks["2"], UPPER_LID))
+    assert up(looks["1+2"], UPPER_LID) < 1.5 * alone
+    # 2+4: steep, its inner end held down and drawn in.
+    assert up(looks["2+4"], OUTER_BROW) - up(looks["2+4"], INNER_BROW) > 4.0
+    assert looks["2+4"].u(INNER_BROW)[0] < looks["2"].u(INNER_BROW)[0] - 1.0
+    # 4+5: the brow as low as in 4, the lid as high as in 5.
+    assert up(looks["4+5"], INNER_BROW) == pytest.approx(up(looks["4"], INNER_BROW), abs=0.3)
+    assert up(looks["4+5"], UPPER_LID) > up(looks["5"], UPPER_LID) - 0.5
+
+
+def test_eyes_and_cheeks_combine_as_the_manual_says(looks):
+    cheeks = {name: up(looks[name], CHEEK) for name in ("6", "12", "6+12")}
+    assert max(cheeks["6"], cheeks["12"]) < cheeks["6+12"] < 0.9 * (cheeks["6"] + cheeks["12"])
+    narrowest = min(fissure(looks["6"]), fissure(looks["7"]))
+    assert 4.0 < fissure(looks["6+7"]) < narrowest
+    assert looks["5+43"].displacements == pytest.approx(looks["43"].displacements, abs=0.05)
+    out = {n: looks[n].along(HOLLOW, *OUT_OF_CHEEK) for n in ("33", "34", "33+34")}
+    assert out["33+34"] == pytest.approx(out["34"], abs=0.05)
+    assert out["34"] > out["33"] + 2.0
+
+
+def test_lips_combine_as_the_manual_says(looks):
+    # 9+10: no higher than by the stronger, the nostril's wing as high as in 9.
+    assert up(looks["9+10"], UPPER_LIP) == pytest.approx(up(looks["10"], UPPER_LIP), abs=0.5)
+    # 15+17: an arch: the middle of the lower lip over its corners.
+    arch = {n: up(looks[n], LOWER_LIP) - up(looks[n], CORNER) for n in ("15", "15+17")}
+    assert arch["15+17"] > arch["15"] + 1.0
+    # 23+24: one line, not twice as thin; and no more drawn in than by 23.
+    assert red(looks["23+24"]) < red(looks["23"]) + red(looks["24"]) - 0.3
+    drawn = {
+        n: -float(looks[n].u(CORNER)[0]) for n in ("18", "22", "23", "23+24", "18+22", "18+23")
+    }
+    assert drawn["23+24"] < drawn["23"]
+    # 18+22: the ring contracts once; 18+23: a tight, small mouth.
+    assert drawn["18+22"] < 0.8 * (drawn["18"] + drawn["22"])
+    assert drawn["18+23"] > drawn["18"]
+    assert gap(looks["18+23"]) < gap(looks["18"])
+
+
+def test_stretched_lips_part(looks):
+    assert gap(looks["12+25"]) > gap(looks["12"]) + 2.0
+    assert gap(looks["20+25"]) > gap(looks["20"]) + 3.0
+    assert up(looks["12+25"], CORNER) > 5.0
+    assert up(looks["12+26"], CORNER) > 2.0 > up(looks["26"], CORNER) + 4.0
