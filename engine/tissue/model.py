@@ -42,6 +42,9 @@ THIN_MM = 0.6
 PRESSED, PRESSED_THIN = 0.3, -0.2
 """Least share of its volume that an element keeps in any expression, by the length of its columns:
 what masses count."""
+INNER_LIP_ORDER = 1.6
+"""Factor on the resistance to being pressed flat behind the upper lip, whose elements are the
+thinnest, and are stretched over the teeth by every smile."""
 THROAT_VOLUME = 3.2
 """Factor on the volume modulus under the chin, where a wide open jaw pushes the skin together."""
 LEAST_ELEMENT_MM = 0.6
@@ -292,6 +295,8 @@ def _prisms(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Pr
         np.cross(middle[:, 1] - middle[:, 0], middle[:, 2] - middle[:, 0]), axis=1
     )
     throat = np.maximum(*(region_share(sheet, region) for region in THROAT_REGIONS))
+    inner = region_share(sheet, "upper_lip_inner")[corners % n].max(axis=1)
+    stubborn = 1.0 + (INNER_LIP_ORDER - 1.0) * inner
     firm = 1.0 + (THROAT_VOLUME - 1.0) * throat[corners % n].max(axis=1)
     thickness = np.maximum(volume / size, LEAST_ELEMENT_MM)
     # Of a lid's plate all corners are moved: it cannot lose volume.
@@ -300,7 +305,7 @@ def _prisms(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Pr
         corners[keep].astype(np.int32),
         (p.skin_volume * firm * size / area0 * thickness**2)[keep],
         volume[keep],
-        (p.layer_order / firm)[keep],
+        (p.layer_order * stubborn / firm)[keep],
         p.layer_gap,
     )
 
