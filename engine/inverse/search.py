@@ -30,11 +30,11 @@ FIRST_REGION = 0.8
 RENEWED_AT = 2
 """Iteration before which slopes are first simulated anew."""
 MOST_RENEWALS = 2
-RENEWED_CONTROLS = 16
+RENEWED_CONTROLS = 20
 """Controls whose slopes are simulated anew: those that act, or are about to, most."""
 CONVERGED = 0.02
 """Relative gain of an iteration, with fresh slopes, at which the search ends."""
-CLOSE_MM = 0.012
+CLOSE_MM = 0.008
 """Root mean squared misfit at which it ends in any case."""
 
 
