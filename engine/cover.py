@@ -25,7 +25,11 @@ def showing(rig: Rig, frame: Frame) -> dict[str, int]:
     """Return how many vertices of each part stand before the skin that should cover them.
 
     In the mouth they are vertices of teeth, gums and tongue with outer skin behind them; at the
-    eyes, vertices of the skin that have sunk into the eyeball.
+    eyes, vertices of the skin that have sunk into the eyeball. Parts with none are left out.
+
+    Args:
+        rig: Whose head.
+        frame: A face of that rig.
     """
     head = rig.head
     skin = head.drawn.deform(np.asarray(frame.displacements, dtype=np.float64), head.eyes)
@@ -55,7 +59,16 @@ def showing(rig: Rig, frame: Frame) -> dict[str, int]:
 def crossings(
     start: FloatArray, way: FloatArray, vertices: FloatArray, triangles: IntArray
 ) -> BoolArray:
-    """Tell which ways (k, 3) from their starts cross a triangle that faces back at the start."""
+    """Tell which ways cross a triangle that faces back at their start, shape (k,).
+
+    By Möller and Trumbore's intersection (1997), of each way with the triangles near it.
+
+    Args:
+        start: Where the ways begin, mm, shape (k, 3).
+        way: How far and whither they go, mm, shape (k, 3).
+        vertices: Of the surface, mm, shape (d, 3).
+        triangles: Of the surface, counter-clockwise from outside, shape (t, 3).
+    """
     length = float(np.linalg.norm(way, axis=1).max())
     beside = (vertices < start.min(axis=0) - length) | (vertices > start.max(axis=0) + length)
     triangles = triangles[~beside.any(axis=1)[triangles].all(axis=1)]

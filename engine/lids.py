@@ -68,7 +68,9 @@ def lids_with_skin(
 
 
 def lids_meeting(angles: FloatArray, opening: FloatArray) -> FloatArray:
-    """Return the turn of lids that do not pass each other: the upper one stops on the lower.
+    """Return the turn of lids that do not pass each other, degrees, shape (2, 2).
+
+    The upper one, which travels farther, stops on the lower.
 
     Args:
         angles: Side, then upper and lower, degrees.

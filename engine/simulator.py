@@ -275,7 +275,10 @@ class Simulator:
         state.posed = rigid
 
     def _rigid_signals(self, state: FaceState) -> FloatArray:
-        """Return jaw pitch, yaw, thrust and the four lid angles, shape (7,)."""
+        """Return jaw pitch, yaw, degrees, thrust, mm, and the four lid angles, degrees, shape (7,).
+
+        The lids' follow from where the skin stands now: no state of their own is kept.
+        """
         m = self.rig.channels.muscle_count
         angles = np.einsum("m,msl->sl", state.signals[:m], self.assembly.lid_angles)
         pitch = float(state.signals[self.rig.channels.index("gaze", "pitch")])
