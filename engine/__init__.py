@@ -5,7 +5,7 @@ Eurographics 2001). A face is a rig; commands are keyframes; a simulator plays t
 """
 
 from .analysis import Analysis, UnitBasis, analyze, analyze_facs, unit_basis
-from .clip import Clip, clip_of, record, settled, settled_units
+from .clip import Clip, clip_of, record
 from .combination import Combination
 from .conditions import TISSUE_AGES, plain_changes
 from .emotion import Emotion, blend
@@ -43,6 +43,7 @@ from .rig import (
     rig_from_recipe,
 )
 from .separability import ALIKE, MOST_ALIKE, Separability, separability
+from .settling import settled, settled_units
 from .simulator import FaceState, Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
 from .arrays import Float32Array
-from .cache import Arrays, cached_arrays, content_key
 from .errors import Cancelled, Diverged, InvalidValue
 from .frame import Frame, Pose
 from .rig import Model, Rig
+from .settling import Progress
 from .simulator import Simulator
-from .sources import ENGINE_HASH
-from .timeline import TICKS_PER_SECOND, Keyframe, Timeline, ticks
-
-Progress = Callable[[float], None]
+from .timeline import TICKS_PER_SECOND, Timeline, ticks
 
 FACE = "clip"
 MAX_FPS = TICKS_PER_SECOND
-UNIT_FADE = 0.15
-"""Seconds over which an action unit is raised before it settles; a jump excites the tissue."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,78 +123,3 @@ class _Player:
             if FACE in stepped and stepped[FACE].diverged:
                 raise Diverged(f"the face diverged at {self._tick / TICKS_PER_SECOND:.2f} s")
         return self._simulator.frame(FACE)
-
-
-def settled(
-    rig: Rig,
-    keyframes: Sequence[Keyframe],
-    seconds: float = 1.0,
-    *,
-    progress: Progress | None = None,
-) -> list[Frame]:
-    """Return the face that each keyframe leads to, each on a face of its own.
-
-    Args:
-        rig: Whose faces.
-        keyframes: One a face, applied to the face at rest.
-        seconds: How long the faces are given; they are stepped together.
-        progress: Told the share of the work done, 0 to 1.
-    """
-    simulator = Simulator(rig)
-    faces = [f"face {number}" for number in range(len(keyframes))]
-    for face, keyframe in zip(faces, keyframes, strict=True):
-        simulator.add(face)
-        simulator.apply(face, keyframe)
-    total = max(1, ticks(seconds))
-    for tick in range(total):
-        simulator.step()
-        if progress is not None:
-            progress((tick + 1) / total)
-    return [simulator.frame(face) for face in faces]
-
-
-def settled_units(rig: Rig, *, progress: Progress | None = None) -> list[Frame]:
-    """Return each action unit of `rig` settled at full intensity, in the rig's order.
-
-    Kept on disk under the rig's id, for it takes seconds and many ask for it.
-    """
-    keyframes = [Keyframe(action_units={name: 1.0}, fade=UNIT_FADE) for name in rig.action_units]
-    key = content_key(rig.id, keyframes, ENGINE_HASH)
-
-    def build() -> Arrays:
-        return _to_arrays(settled(rig, keyframes, progress=progress))
-
-    return _from_arrays(cached_arrays("units", key, build))
-
-
-def _to_arrays(frames: Sequence[Frame]) -> Arrays:
-    return {
-        "ticks": np.array([frame.tick for frame in frames]),
-        "flags": np.array([(frame.asleep, frame.diverged) for frame in frames]),
-        "displacements": np.stack([frame.displacements for frame in frames]),
-        "activations": np.stack([frame.activations for frame in frames]),
-        "poses": np.array([np.hstack(astuple(frame.pose)) for frame in frames]),
-    }
-
-
-def _from_arrays(arrays: Arrays) -> list[Frame]:
-    return [
-        Frame(
-            tick=int(tick),
-            displacements=displacements,
-            activations=activations,
-            pose=_pose(pose.tolist()),
-            asleep=bool(flags[0]),
-            diverged=bool(flags[1]),
-        )
-        for tick, flags, displacements, activations, pose in zip(
-            *(arrays[name] for name in ("ticks", "flags", "displacements", "activations", "poses")),
-            strict=True,
-        )
-    ]
-
-
-def _pose(numbers: list[float]) -> Pose:
-    pitch, yaw, thrust, *gaze, turn, nod, tilt, head_thrust, tongue_thrust = numbers
-    left, right = (gaze[0], gaze[1]), (gaze[2], gaze[3])
-    return Pose(pitch, yaw, thrust, left, right, (turn, nod, tilt), head_thrust, tongue_thrust)

@@ -10,8 +10,8 @@ import numpy as np
 from .arrays import FloatArray
 from .frame import Pose
 from .rig import Model, Rig
-from .simulator import Simulator
-from .timeline import TICKS_PER_SECOND, Keyframe
+from .settling import settled
+from .timeline import Keyframe
 
 INNER_BROW, OUTER_BROW = "E4_2.L", "E4_6.L"
 UPPER_LID, LOWER_LID = "E1_4.L", "E1_12.L"
@@ -193,13 +193,7 @@ def settle(
     rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 1.0, model: Model | None = None
 ) -> list[Face]:
     """Return one face a keyframe, after `seconds` of simulation from rest."""
-    simulator = Simulator(rig, model=model)
-    for index, keyframe in enumerate(keyframes):
-        simulator.add(str(index))
-        simulator.apply(str(index), keyframe)
-    for _ in range(round(seconds * TICKS_PER_SECOND)):
-        simulator.step()
-    frames = (simulator.frame(str(index)) for index in range(len(keyframes)))
+    frames = settled(rig, keyframes, seconds, model=model)
     return [Face(rig, frame.displacements, frame.pose) for frame in frames]
 
 

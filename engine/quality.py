@@ -9,7 +9,9 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray
 from .channels import JAW, LIMITS
+from .frame import Frame
 from .rig import MAX_ACTIVATION, Rig
+from .settling import settled
 from .simulator import Simulator
 from .timeline import TICKS_PER_SECOND, Keyframe
 from .tissue.layers import sheet_of
@@ -109,20 +111,20 @@ def judge(rig: Rig, keyframes: Sequence[Keyframe]) -> list[Quality]:
 
 def _histories(rig: Rig, keyframes: Sequence[Keyframe]) -> list[tuple[FloatArray, float]]:
     """Return every face's displacements over a second, (60, s, 3), and its last top speed."""
-    simulator = _faces(rig, keyframes)
-    names = simulator.faces
-    history: dict[str, list[FloatArray]] = {name: [] for name in names}
-    last: dict[str, FloatArray] = {}
-    for _ in range(TICKS_PER_SECOND):
-        simulator.step()
-        for name in names:
-            last[name] = history[name][-1] if history[name] else np.zeros(1)
-            history[name].append(simulator.frame(name).displacements)
-    speeds = {
-        name: float(np.linalg.norm(history[name][-1] - last[name], axis=1).max()) * TICKS_PER_SECOND
-        for name in names
-    }
-    return [(np.array(history[name]), speeds[name]) for name in names]
+    history: list[list[FloatArray]] = [[] for _ in keyframes]
+
+    def remember(faces: Sequence[Frame]) -> None:
+        for past, frame in zip(history, faces, strict=True):
+            past.append(frame.displacements)
+
+    settled(rig, keyframes, watch=remember)
+    return [
+        (
+            np.array(past),
+            float(np.linalg.norm(past[-1] - past[-2], axis=1).max()) * TICKS_PER_SECOND,
+        )
+        for past in history
+    ]
 
 
 def _ends(rig: Rig, keyframes: Sequence[Keyframe], *, overshoot: float | None) -> list[FloatArray]:
@@ -138,14 +140,6 @@ def _ends(rig: Rig, keyframes: Sequence[Keyframe], *, overshoot: float | None) -
                 simulator.apply(str(index), _timed(_scaled(rig, keyframe, 1.0), 0.01))
         simulator.step()
     return [simulator.frame(str(i)).displacements for i in range(len(keyframes))]
-
-
-def _faces(rig: Rig, keyframes: Sequence[Keyframe]) -> Simulator:
-    simulator = Simulator(rig)
-    for index, keyframe in enumerate(keyframes):
-        simulator.add(str(index))
-        simulator.apply(str(index), keyframe)
-    return simulator
 
 
 def _scaled(rig: Rig, keyframe: Keyframe, factor: float) -> Keyframe:

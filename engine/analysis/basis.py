@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..assembly import Assembly
+from ..assembly import Assembly, compile_rig
 from ..cache import Arrays, cached_arrays, content_key
 from ..rig import Model, Rig
-from ..simulator import Simulator
+from ..settling import Progress, settled
 from ..sources import ENGINE_HASH
-from ..timeline import TICKS_PER_SECOND, Keyframe
+from ..timeline import Keyframe
 
 STEPS = (0.5, 1.0)
 """Intensities at which each unit is settled; between them its field is interpolated."""
 SETTLE_SECONDS = 0.75
 FADE = 0.1
+ARRIVED_MM = 0.02
+"""Motion in a tick under which a unit has settled: what is left of its way is 0.1 mm at most."""
 STILL_MM = 0.3
 """A unit that moves no point farther than this at full intensity cannot be measured."""
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +80,7 @@ def unit_basis(
         progress: Told the share of the work done, 0 to 1; may raise to stop it.
     """
     names = _moving_tissue(rig)
-    key = content_key(rig.id, model or rig.model, STEPS, SETTLE_SECONDS, ENGINE_HASH)
+    key = content_key(rig.id, model or rig.model, STEPS, SETTLE_SECONDS, ARRIVED_MM, ENGINE_HASH)
     arrays = cached_arrays("unit-fields", key, lambda: _settled(rig, model, threads, progress))
     fields, left, right = (arrays[name].astype(np.float64) for name in ("fields", "left", "right"))
     moving = np.linalg.norm(fields[-1], axis=2).max(axis=1) > STILL_MM
@@ -95,8 +94,7 @@ def _settled(
 ) -> Arrays:
     """Return each unit's field at each step, and of its sides, settled side by side."""
     names = _moving_tissue(rig)
-    simulator = Simulator(rig, model=model, threads=threads)
-    mirror = _mirror(simulator.assembly)
+    mirror = _mirror(compile_rig(rig, model or rig.model))
     sided = [name for name in names if _has_sides(rig, name)]
     sides = "L" if mirror is not None else "LR"
     faces = [(name, step) for step in STEPS for name in names]
@@ -106,17 +104,17 @@ def _settled(
         for side in sides
         for name in sided
     ]
-    for key, step in faces:
-        face = f"{key} {step}"
-        simulator.add(face)
-        simulator.apply(face, Keyframe(action_units={key: step}, fade=FADE))
-    ticks = round(SETTLE_SECONDS * TICKS_PER_SECOND)
-    for tick in range(ticks):
-        simulator.step()
-        if progress is not None:
-            progress((tick + 1) / ticks)
+    frames = settled(
+        rig,
+        [Keyframe(action_units={key: step}, fade=FADE) for key, step in faces],
+        SETTLE_SECONDS,
+        model=model,
+        threads=threads,
+        still_mm=ARRIVED_MM,
+        progress=progress,
+    )
     n, many = rig.head.sheet_count, len(names)
-    ends = [simulator.frame(f"{key} {step}").displacements[:n] for key, step in faces]
+    ends = [frame.displacements[:n] for frame in frames]
     half = {side: np.zeros((len(STEPS), many, n, 3)) for side in "LR"}
     for (key, step), end in list(zip(faces, ends, strict=True))[len(STEPS) * many :]:
         half[key[0]][STEPS.index(step), names.index(f"AU{key[1:]}")] = end

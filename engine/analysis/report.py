@@ -10,15 +10,15 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..assembly import Assembly
-from ..clip import UNIT_FADE
 from ..dynamics import Skull
 from ..facs import parse_facs
 from ..rig import Model, Rig
+from ..settling import UNIT_FADE, Progress
 from ..simulator import Simulator, Snapshot
 from ..skull import pose_skull
 from ..timeline import TICKS_PER_SECOND, Keyframe
 from ..tissue.parameters import LAYERS
-from .basis import Progress, UnitBasis, unit_basis
+from .basis import UnitBasis, unit_basis
 from .energy import node_energy
 from .measured import Seen, measure_face
 from .muscles import MILLINEWTON, MuscleState, muscle_forces, muscle_states

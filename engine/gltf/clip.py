@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
-from ..clip import Clip, Progress
+from ..clip import Clip
 from ..errors import Cancelled
+from ..settling import Progress
 from .basis import SHARE_DROPPED, MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder, Textures, metres
 from .drawn import DrawnFace

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..clip import settled_units
 from ..frame import Frame
 from ..head.head import Part
 from ..rig import Rig
+from ..settling import settled_units
 from .builder import GlbBuilder, Textures, metres
 from .drawn import DrawnFace
 from .pose import motions

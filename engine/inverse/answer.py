@@ -10,11 +10,12 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..rig import Model, Rig
+from ..settling import Progress
 from ..simulator import Simulator
 from ..timeline import TICKS_PER_SECOND
 from .controls import Controls, controls_of
 from .goal import Goal, check_number, goal_of
-from .response import Progress, response_of
+from .response import response_of
 from .search import Search
 
 REGULARIZATION_MM = 0.8

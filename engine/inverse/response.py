@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +10,9 @@ from ..arrays import FloatArray
 from ..cache import Arrays, cached_arrays, content_key
 from ..channels import JAW
 from ..rig import Model, Rig
-from ..simulator import Simulator
+from ..settling import Progress, settled
 from ..sources import ENGINE_HASH
-from ..timeline import Keyframe
+from ..timeline import TICKS_PER_SECOND, Keyframe
 
 JAW_SCALE = {"pitch": 15.0, "yaw": 5.0, "thrust": 4.0}
 """Degrees and mm of jaw that count as much as a muscle's full activation."""
@@ -21,8 +20,6 @@ RESPONSE_STEP = 0.4
 """Activation, or share of `JAW_SCALE`, at which the response to each is taken."""
 RESPONSE_TICKS = 42
 """Ticks that the faces are given to settle from rest."""
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,22 +52,14 @@ def response_of(
     key = content_key(rig.id, model or rig.model, RESPONSE_STEP, RESPONSE_TICKS, ENGINE_HASH)
 
     def build() -> Arrays:
-        simulator = Simulator(rig, model=model, threads=threads)
         commands = [Keyframe(muscles={name: RESPONSE_STEP}) for name in rig.muscle_names]
         steps = [RESPONSE_STEP] * len(commands)
         for axis in JAW:
             steps.append(RESPONSE_STEP * JAW_SCALE[axis])
             commands.append(Keyframe(jaw={axis: steps[-1]}))
-        for number, command in enumerate(commands):
-            simulator.add(str(number))
-            simulator.apply(str(number), command)
-        for tick in range(RESPONSE_TICKS):
-            simulator.step()
-            if progress is not None:
-                progress((tick + 1) / RESPONSE_TICKS)
-        fields = [
-            simulator.frame(str(number)).displacements / step for number, step in enumerate(steps)
-        ]
+        seconds = RESPONSE_TICKS / TICKS_PER_SECOND
+        ends = settled(rig, commands, seconds, model=model, threads=threads, progress=progress)
+        fields = [end.displacements / step for end, step in zip(ends, steps, strict=True)]
         return {"fields": np.array(fields)}
 
     return Response(cached_arrays("response", key, build)["fields"].astype(np.float64))

@@ -7,10 +7,12 @@ import pytest
 from recorded import FPS, TIMELINE, live_frames, standard_clip
 
 import engine.clip
-from engine.clip import Cancelled, nearest_tick, record, settled, settled_units
+import engine.settling
+from engine.clip import Cancelled, nearest_tick, record
 from engine.errors import Diverged, InvalidValue, UnknownName
 from engine.frame import Frame, Pose
 from engine.rig import builtin_rig
+from engine.settling import settled, settled_units
 from engine.simulator import Simulator
 from engine.timeline import Keyframe, Timeline
 
@@ -93,6 +95,18 @@ def test_settled_faces_do_not_see_each_other() -> None:
     assert alone.tick == 12
 
 
+def test_a_face_that_has_arrived_is_stepped_no_more() -> None:
+    rig = builtin_rig("standard")
+    keyframes = [Keyframe(action_units={"AU12": 1.0}), Keyframe(action_units={"AU45": 1.0})]
+    shares: list[float] = []
+    whole = settled(rig, keyframes, seconds=0.75)
+    smile, blink = settled(rig, keyframes, seconds=0.75, still_mm=0.02, progress=shares.append)
+    assert blink.tick < smile.tick < whole[0].tick
+    assert shares[-1] == 1.0
+    for early, late in zip((smile, blink), whole, strict=True):
+        assert np.linalg.norm(early.displacements - late.displacements, axis=1).max() < 0.1
+
+
 def test_settled_units_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = builtin_rig("standard")
     first = settled_units(rig)
@@ -101,7 +115,7 @@ def test_settled_units_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
     def never(*_: object, **__: object) -> None:
         raise AssertionError("simulated again")
 
-    monkeypatch.setattr(engine.clip, "settled", never)
+    monkeypatch.setattr(engine.settling, "settled", never)
     for stored, frame in zip(settled_units(rig), first, strict=True):
         np.testing.assert_array_equal(stored.displacements, frame.displacements)
         np.testing.assert_array_equal(stored.activations, frame.activations)

@@ -14,11 +14,12 @@ from glb_tools import assert_valid, run_node
 from recorded import FPS, standard_clip
 from small_textures import small_textures
 
-from engine.clip import record, settled_units
+from engine.clip import record
 from engine.gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb
 from engine.gltf.drawn import DrawnFace
 from engine.gltf.pose import motions
 from engine.rig import builtin_rig
+from engine.settling import settled_units
 from engine.simulator import Simulator
 from engine.textures import texture_names
 from engine.timeline import Keyframe, Timeline
