@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import threading
 from collections.abc import AsyncIterator, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from typing import Any, TypeVar
+
+import structlog
 
 from engine import (
     Analysis,
@@ -24,11 +28,29 @@ from engine import (
 
 from .errors import Busy, refused_by_engine
 from .insight_bodies import InverseRequest
+from .latest_first import LatestFirst
 from .runner import Look
 from .shelf import Shelf
 
+_LOG = structlog.get_logger("service")
 _BASES_IN_MEMORY = 8
+_BASES_WAITING = 4
+_THREADS = max(1, (os.cpu_count() or 2) - 1)
+"""Cores that settle a rig's units: live faces keep one, and go first on the others."""
 Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, eq=False)
+class Insights:
+    """What could be said of a face in the time that was given.
+
+    Attributes:
+        analysis: Without measured units while those of its rig are not known.
+        measuring: Share of the work on them that is done, 0 to 1; None where nothing is awaited.
+    """
+
+    analysis: Analysis
+    measuring: float | None
 
 
 class Insight:
@@ -38,34 +60,40 @@ class Insight:
         self._queue_limit = queue_limit
         self._asked = 0
         self._closing = threading.Event()
-        # One thread, for what takes seconds: live faces keep the other cores.
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="insight")
-        self._bases: Shelf[UnitBasis] = Shelf(_BASES_IN_MEMORY, self._pool)
+        self._measuring = LatestFirst("measuring", most=_BASES_WAITING)
+        self._bases: Shelf[UnitBasis] = Shelf(_BASES_IN_MEMORY, self._measuring)
+        self._shares: dict[str, float] = {}
 
     def close(self) -> None:
         """Stop at the next tick of what is being simulated."""
         self._closing.set()
         self._pool.shutdown(wait=True, cancel_futures=True)
+        self._measuring.shutdown(wait=True, cancel_futures=True)
 
-    async def analyze(self, look: Look, *, measured: bool) -> Analysis:
+    async def analyze(self, look: Look, *, measured: bool, wait: float = 0.0) -> Insights:
         """Return what a face does inside.
+
+        Its action units are measured by what each unit of its rig looks like. Where nobody has
+        asked for that before, it is worked out beside the live faces, and left out until then.
 
         Args:
             look: The face, and what its layers hold.
-            measured: Whether to measure its action units too: the first time on a rig, that takes
-                as long as its units take to settle.
+            measured: Whether to measure its action units too.
+            wait: Seconds to wait for what each unit looks like.
 
         Raises:
             Busy: If too much is asked for at once.
         """
         async with self._place():
-            basis = None
+            basis, share = None, None
             assembly = look.snapshot.assembly
             if measured:
-                basis = await self._basis(assembly.rig, assembly.model)
-            return await self._computed(
+                basis, share = await self._basis(assembly.rig, assembly.model, wait)
+            analysis = await self._computed(
                 lambda: analyze(look.snapshot, basis=basis, requested=_requested(look.report))
             )
+            return Insights(analysis, share)
 
     async def invert(self, rig: Rig, request: InverseRequest) -> Inverse:
         """Return the controls that bring landmarks nearest to their targets.
@@ -83,11 +111,31 @@ class Insight:
             except EngineError as error:
                 raise refused_by_engine(error) from error
 
-    async def _basis(self, rig: Rig, model: Model) -> UnitBasis:
-        return await self._bases.get(
-            f"{rig.id} {model}",
-            lambda: unit_basis(rig, model, threads=1, progress=self._go_on),
-        )
+    async def _basis(
+        self, rig: Rig, model: Model, wait: float
+    ) -> tuple[UnitBasis | None, float | None]:
+        """Return the fields of a rig's units, or the share of them that is done by then."""
+        key = f"{rig.id} {model}"
+        task = self._bases.begin(key, lambda: self._made(key, rig, model))
+        await asyncio.wait({task}, timeout=wait)
+        if task.done() and not task.cancelled():
+            return task.result(), None
+        return None, self._shares.get(key, 0.0)
+
+    def _made(self, key: str, rig: Rig, model: Model) -> UnitBasis:
+        def go_on(share: float) -> None:
+            self._shares[key] = share
+            self._go_on(share)
+
+        try:
+            return unit_basis(rig, model, threads=_THREADS, progress=go_on)
+        except EngineError:
+            raise
+        except Exception:
+            _LOG.exception("the units of a rig could not be measured", rig=rig.id)
+            raise
+        finally:
+            self._shares.pop(key, None)
 
     async def _computed(self, compute: Callable[[], Result]) -> Result:
         try:

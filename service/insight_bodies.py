@@ -96,6 +96,13 @@ class MeasuredBody(BaseModel):
     residual: float = Field(description="Share of the motion that no unit explains.")
 
 
+class MeasuringBody(BaseModel):
+    """Work on what each action unit of a rig looks like, done once for each rig."""
+
+    progress: float = Field(description="Share of it that is done, 0 to 1.")
+    message: str
+
+
 class AnalysisBody(BaseModel):
     """A face looked into."""
 
@@ -105,7 +112,10 @@ class AnalysisBody(BaseModel):
     layers: dict[str, StrainBody]
     energy: EnergyBody
     regions: dict[str, RegionBody]
-    measured: MeasuredBody | None = None
+    measured: MeasuredBody | None = Field(
+        default=None, description="Null while it is being measured; absent if not asked for."
+    )
+    measuring: MeasuringBody | None = None
 
 
 class InverseRequest(Body):

@@ -4,27 +4,46 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Response
 
 from ..components import Parts
 from ..insight_bodies import AnalysisBody, InverseBody, InverseRequest
 
 router = APIRouter(prefix="/api", tags=["insight"])
-Measured = Annotated[
-    bool,
-    Query(description="Whether action units are measured: slow the first time on a rig."),
+_POLL_SECONDS = 2
+Measured = Annotated[bool, Query(description="Whether action units are measured.")]
+Wait = Annotated[
+    float,
+    Query(
+        ge=0,
+        le=60,
+        allow_inf_nan=False,
+        description="Seconds to wait for what each unit of this rig looks like, if nobody has "
+        "asked for that before.",
+    ),
 ]
 
 
-@router.get("/sessions/{session_id}/analysis", response_model_exclude_none=True)
+@router.get("/sessions/{session_id}/analysis", response_model_exclude_unset=True)
 async def session_analysis(
-    session_id: str, parts: Parts, measured: Measured = True
+    session_id: str, parts: Parts, response: Response, measured: Measured = True, wait: Wait = 1.0
 ) -> AnalysisBody:
     """Return force and contraction by muscle, strain, energy, and measured action units."""
     session = await parts.sessions.get(session_id)
     look = await parts.sessions.look(session)
-    analysis = await parts.insight.analyze(look, measured=measured)
-    return AnalysisBody.model_validate(analysis.to_json())
+    found = await parts.insight.analyze(look, measured=measured, wait=wait)
+    body = found.analysis.to_json()
+    if found.measuring is not None:
+        response.headers["Retry-After"] = str(_POLL_SECONDS)
+        message = (
+            "what each action unit of this rig looks like is being worked out, once for each rig; "
+            "ask again, or with ?wait=60"
+        )
+        body |= {
+            "measured": None,
+            "measuring": {"progress": round(found.measuring, 3), "message": message},
+        }
+    return AnalysisBody.model_validate(body)
 
 
 @router.post("/rigs/{rig}/inverse")

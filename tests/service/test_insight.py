@@ -15,6 +15,7 @@ from starlette.testclient import TestClient
 from typer.testing import CliRunner
 
 import service.insight
+from engine import Cancelled
 from service.cli import app
 from service.errors import Busy
 from service.insight import Insight
@@ -24,13 +25,25 @@ def asleep(client: TestClient, session: str) -> bool:
     return bool(client.get(f"/api/sessions/{session}").json()["asleep"])
 
 
+def measured(client: TestClient, session: str) -> dict[str, Any]:
+    """Return the analysis of a face once its rig's units are known."""
+    answers: list[dict[str, Any]] = []
+
+    def done() -> bool:
+        answer = client.get(f"/api/sessions/{session}/analysis?wait=60")
+        assert answer.status_code == 200, answer.text
+        answers.append(answer.json())
+        return "measuring" not in answers[-1]
+
+    until(done, seconds=600)
+    return answers[-1]
+
+
 def test_a_live_face_says_that_15_fights_12(client: TestClient, session: str) -> None:
     controls = {"facs": "12E+15E", "fade": 0.1}
     assert client.put(f"/api/sessions/{session}/controls", json=controls).status_code == 200
     until(lambda: asleep(client, session))
-    answer = client.get(f"/api/sessions/{session}/analysis")
-    assert answer.status_code == 200, answer.text
-    body = answer.json()
+    body = measured(client, session)
     units = {u["unit"]: u for u in body["measured"]["action_units"]}
     assert units["AU12"]["requested"] == units["AU15"]["requested"] == 1.0
     assert units["AU15"]["measured"] < 0.75
@@ -50,6 +63,43 @@ def test_an_analysis_without_measured_units_is_quick_and_shorter(
     body = client.get(f"/api/sessions/{session}/analysis?measured=0").json()
     assert "measured" not in body
     assert body["energy"]["total"] == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_rig_whose_units_are_not_known_is_answered_at_once(
+    client: TestClient, session: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, gate = threading.Event(), threading.Event()
+
+    def slow(_rig: object, _model: object, *, progress: Any, **_: Any) -> None:
+        progress(0.25)
+        begun.set()
+        gate.wait(60.0)
+        progress(0.75)
+        raise Cancelled("enough of this")
+
+    edit = client.patch(f"/api/sessions/{session}/tissue", json={"fat_pressure": 1.23})
+    assert edit.status_code == 200, edit.text
+    monkeypatch.setattr(service.insight, "unit_basis", slow)
+    try:
+        assert client.get(f"/api/sessions/{session}/analysis?wait=0").json()["measured"] is None
+        assert begun.wait(60.0)
+        answer = client.get(f"/api/sessions/{session}/analysis?wait=0")
+    finally:
+        gate.set()
+    body = answer.json()
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["Retry-After"]
+    assert body["measured"] is None
+    assert body["measuring"]["progress"] == 0.25
+    assert "ask again" in body["measuring"]["message"]
+    assert body["muscles"]
+    assert body["energy"]["terms"]
+
+
+def test_a_unit_that_moves_no_tissue_is_measured_as_null(client: TestClient, session: str) -> None:
+    assert client.put(f"/api/sessions/{session}/controls", json={"facs": "61E"}).status_code == 200
+    units = measured(client, session)["measured"]["action_units"]
+    assert units == [{"unit": "AU61", "side": "", "requested": 1.0, "measured": None}]
 
 
 def test_a_session_that_is_not_there_cannot_be_looked_into(client: TestClient) -> None:
@@ -77,8 +127,8 @@ def test_more_than_the_queue_holds_is_refused_at_once(monkeypatch: pytest.Monkey
         with pytest.raises(Busy, match="under way"):
             await insight.analyze(look, measured=False)
         gate.set()
-        assert str(await first) == "done"
-        assert str(await insight.analyze(look, measured=False)) == "done"
+        assert str((await first).analysis) == "done"
+        assert str((await insight.analyze(look, measured=False)).analysis) == "done"
         insight.close()
 
     asyncio.run(ask())
