@@ -15,6 +15,8 @@ REGIONS = ("upper", "lids", "lower", "cheeks", "jaw", "tongue", "gaze", "head")
 UNSCORED = 0.6
 """Intensity of a unit without letter, or with `*`: the middle of the scale, C."""
 
+_SHOWN = 60
+"""Most characters of an unreadable string that are repeated."""
 _TERM = re.compile(r"(?P<side>[LR])?(?:AU)?0*(?P<number>\d{1,2})(?P<letter>[A-E*])?")
 _NAME = re.compile(r"(?:(?P<left_first>[LR])(?:AU)?|AU)?0*(?P<number>\d{1,2})")
 
@@ -106,14 +108,27 @@ def parse_facs(text: str) -> tuple[Term, ...]:
     for part in cleaned.split("+"):
         match = _TERM.fullmatch(part)
         if match is None:
-            raise InvalidNotation(
-                f"cannot read {part!r} in {text!r}; expected an optional side L or R, a unit's "
-                "number, and an optional letter A to E, such as 'R12D'"
-            )
+            raise InvalidNotation(_unreadable(part, text))
         letter = match["letter"]
         intensity = LETTERS[letter] if letter in LETTERS else UNSCORED
         terms.append(Term(f"AU{int(match['number'])}", match["side"] or "", intensity))
     return tuple(terms)
+
+
+def _unreadable(part: str, text: str) -> str:
+    """Return what is wrong with a part of a FACS string, and what was probably meant."""
+    # Units that are set apart by something else than a plus.
+    meant = [unit for unit in re.split(r"[\s,;+]+", text.strip().upper()) if unit]
+    if len(meant) > 1 and all(_TERM.fullmatch(unit) for unit in meant):
+        return f"units are joined by '+': {_short(text)} may mean '{'+'.join(meant)}'"
+    return (
+        f"cannot read {_short(part)} in {_short(text)}; expected an optional side L or R, a unit's "
+        "number, and an optional letter A to E, such as 'R12D'"
+    )
+
+
+def _short(text: str) -> str:
+    return repr(text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…")
 
 
 def format_facs(terms: Iterable[Term]) -> str:

@@ -18,9 +18,9 @@ from starlette.types import Scope
 
 from . import stream
 from .api import router
-from .bodies import explain
 from .components import Components
 from .errors import Refused, error_body, json_response
+from .explaining import did_you_mean, explain
 from .guard import Guard, RateLimit
 from .idempotency import Idempotency
 from .metrics import CountRequests, Metrics
@@ -122,17 +122,24 @@ def _answer_errors(app: FastAPI) -> None:
         return json_response(error.body(), status=error.status, headers=error.headers)
 
     @app.exception_handler(RequestValidationError)
-    async def invalid(_request: Request, error: RequestValidationError) -> Response:
-        body = error_body("invalid_body", explain(list(error.errors())))
+    async def invalid(request: Request, error: RequestValidationError) -> Response:
+        media_type = request.headers.get("content-type", "")
+        found = explain(list(error.errors()), error.body, media_type=media_type)
+        body = error_body("invalid_body", found.message, known=found.known)
         return json_response(body, status=422)
 
     @app.exception_handler(HTTPException)
     async def http_error(request: Request, error: HTTPException) -> Response:
-        name = HTTPStatus(error.status_code).phrase.lower().replace(" ", "_")
+        phrase = HTTPStatus(error.status_code).phrase
         headers = dict(error.headers or {})
+        message, path = str(error.detail), request.url.path
         if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-            headers["Allow"] = ", ".join(_methods(app, request.url.path)) or "GET, HEAD"
-        body = error_body(name, str(error.detail))
+            headers["Allow"] = ", ".join(_methods(app, path)) or "GET, HEAD"
+            message = f"{request.method} is not understood there; send {headers['Allow']}"
+        elif message == phrase:
+            hint = did_you_mean(path, list(app.openapi()["paths"]))
+            message = f"there is nothing at that address{hint or '; /docs lists every route'}"
+        body = error_body(phrase.lower().replace(" ", "_"), message)
         return json_response(body, status=error.status_code, headers=headers)
 
     @app.exception_handler(Exception)

@@ -5,8 +5,8 @@ Unknown fields, NaN and infinity are refused; numbers and sizes are bounded.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Literal
 
 from pydantic import (
     AfterValidator,
@@ -16,9 +16,13 @@ from pydantic import (
     JsonValue,
     StrictBool,
     TypeAdapter,
+    model_validator,
 )
+from pydantic_core import PydanticCustomError
 
 from engine import MAX_ACTIVATION
+
+from .explaining import UNKNOWN_FIELD
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]
 Share = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=1)]
@@ -67,6 +71,19 @@ class Body(BaseModel):
     """Base of every body."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _has_no_other_fields(cls, given: object) -> object:
+        """Refuse a field that there is not, naming those that there are."""
+        known = cls.model_fields
+        for name in given if isinstance(given, Mapping) else ():
+            if name not in known:
+                # Half a surrogate is no text that an answer could hold.
+                shown = str(name).encode(errors="replace").decode()
+                context = {"given": shown, "known": list(known)}
+                raise PydanticCustomError(UNKNOWN_FIELD, "there is no such field", context)
+        return given
 
 
 class Jaw(Body):
@@ -265,13 +282,3 @@ class AckMessage(Body):
 
 Message = Annotated[ControlsMessage | EmotionMessage | AckMessage, Field(discriminator="type")]
 MESSAGE: TypeAdapter[ControlsMessage | EmotionMessage | AckMessage] = TypeAdapter(Message)
-
-
-def explain(errors: Sequence[Any]) -> str:
-    """Return one sentence about the first of pydantic's `errors`."""
-    if not errors:
-        return "the body is not valid"
-    first = errors[0]
-    place = ".".join(str(part) for part in first.get("loc", ()) if part != "body")
-    more = f" ({len(errors) - 1} more)" if len(errors) > 1 else ""
-    return f"{place or 'body'}: {first.get('msg', 'not valid')}{more}"

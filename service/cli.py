@@ -81,7 +81,7 @@ def serve(
     """Serve the viewer, the API and the stream."""
     from pydantic import ValidationError
 
-    from .bodies import explain
+    from .explaining import explain
     from .serving import serve_until_stopped
     from .settings import Settings
     from .store import Store, StoreUnavailable

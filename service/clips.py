@@ -16,9 +16,10 @@ from pydantic import ValidationError
 
 from engine import Cancelled, Clip, EngineError, Rig, Timeline, clip_to_glb
 
-from .bodies import NewClip, explain
+from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
+from .explaining import explain
 from .ground_truth import ground_truth_csv
 from .rendering import SIMULATION_SHARE
 from .rigs import Rigs
@@ -82,7 +83,8 @@ class Clips:
                 try:
                     request = NewClip.model_validate(row.request)
                 except ValidationError as error:
-                    self._fail(row.id, f"this version cannot read it: {explain(error.errors())}")
+                    why = explain(error.errors(), row.request)
+                    self._fail(row.id, f"this version cannot read it: {why}")
                 else:
                     self._launch(row.id, request)
 

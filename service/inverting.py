@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from engine import EngineError, builtin_rig
 
-from .bodies import explain
+from .explaining import explain
 from .insight import inverse_of
 from .insight_bodies import InverseRequest
 
@@ -32,12 +32,13 @@ def invert_file(source: Path, rig: str, show: Callable[[float], None]) -> dict[s
         InverseRefused: If the file cannot be read, or its targets cannot be used.
     """
     try:
-        request = InverseRequest.model_validate(json.loads(source.read_text(encoding="utf-8")))
+        data = json.loads(source.read_text(encoding="utf-8"))
+        request = InverseRequest.model_validate(data)
         return inverse_of(builtin_rig(rig), request, progress=show).to_json()
     except OSError as error:
         raise InverseRefused(f"{source} cannot be read: {error.strerror}.") from error
     except ValidationError as error:
-        message = explain(list(error.errors()))
+        message = explain(list(error.errors()), data)
         raise InverseRefused(f"{source} holds no targets: {message}.") from error
     except (ValueError, RecursionError) as error:
         raise InverseRefused(f"{source} is not a JSON file: {error}.") from error

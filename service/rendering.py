@@ -11,9 +11,10 @@ from pydantic import ValidationError
 
 from engine import EngineError, builtin_rig, clip_to_glb, record, textures_of
 
-from .bodies import NewClip, explain
+from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Refused
+from .explaining import explain
 
 Show = Callable[[str, float], None]
 SIMULATION_SHARE = 0.2
@@ -102,7 +103,7 @@ def _read(source: Path) -> NewClip:
         raise ClipRefused(f"{source} cannot be read: {error.strerror}.") from error
     except ValidationError as error:
         raise ClipRefused(
-            f"{source} is not a timeline: {explain(list(error.errors()))}."
+            f"{source} is not a timeline: {explain(list(error.errors()), data)}."
         ) from error
     except (ValueError, RecursionError) as error:
         raise ClipRefused(f"{source} is not a JSON file: {error}.") from error

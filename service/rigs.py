@@ -37,6 +37,7 @@ from engine import (
 )
 
 from .errors import Busy, NotFound, Unprocessable, refused_by_engine
+from .explaining import did_you_mean
 from .latest_first import LatestFirst
 from .shelf import Shelf
 from .store import Store
@@ -359,7 +360,8 @@ class Rigs:
 
     def _unknown(self, name: str) -> NotFound:
         known = [*_named(), *(row.id for row in self._store.rigs())]
-        return NotFound("unknown_rig", f"there is no rig {name!r}", known=known)
+        hint = did_you_mean(name, _named())
+        return NotFound("unknown_rig", f"there is no rig {name!r}{hint}", known=known)
 
 
 def _derive(base: Rig, changes: Mapping[str, Any]) -> Rig:

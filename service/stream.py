@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -12,11 +12,12 @@ from fastapi import APIRouter, WebSocket
 from pydantic import ValidationError
 from starlette.websockets import WebSocketDisconnect
 
-from .bodies import MESSAGE, AckMessage, ControlsMessage, explain
+from .bodies import MESSAGE, AckMessage, ControlsMessage
 from .clashes import clashes
 from .commands import controls_keyframe, play_emotion
 from .components import Components
 from .errors import Refused, error_body, json_response
+from .explaining import explain
 from .guard import KEY_SUBPROTOCOL
 from .protocol import SUBPROTOCOL
 from .sessions import Session
@@ -124,13 +125,21 @@ async def _obey(
             viewer.offer({"type": "warning", "message": warning})
     except (ValidationError, UnicodeEncodeError) as error:
         details = error.errors() if isinstance(error, ValidationError) else []
-        viewer.offer(_error("invalid_message", explain(list(details))))
+        found = explain(list(details), _plain(text))
+        viewer.offer(_error("invalid_message", found.message, found.known))
     except Refused as refused:
         viewer.offer({"type": "error", **refused.body()})
 
 
-def _error(name: str, message: str) -> Mapping[str, Any]:
-    return {"type": "error", **error_body(name, message)}
+def _plain(text: str) -> object:
+    """Return a message as plain data, None if it is not JSON."""
+    with suppress(ValueError, RecursionError):
+        return json.loads(text)
+    return None
+
+
+def _error(name: str, message: str, known: Sequence[str] | None = None) -> Mapping[str, Any]:
+    return {"type": "error", **error_body(name, message, known=known)}
 
 
 async def _send_event(socket: WebSocket, event: Mapping[str, Any]) -> None:

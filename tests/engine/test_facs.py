@@ -34,6 +34,12 @@ def test_what_cannot_be_read_says_which_part(text):
         parse_facs(text)
 
 
+@pytest.mark.parametrize("text", ["6c 12D", "6C, 12D", "6C;12D"])
+def test_units_without_a_plus_are_told_what_was_probably_meant(text):
+    with pytest.raises(InvalidNotation, match=r"joined by '\+'.*may mean '6C\+12D'"):
+        parse_facs(text)
+
+
 def test_sides_are_read_from_keys():
     assert split_side("AU12") == ("AU12", "")
     assert split_side("l12") == ("AU12", "L")

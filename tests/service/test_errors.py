@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -111,6 +112,92 @@ def test_no_body_is_a_failure(
     assert answer.status_code < 500 or answer.status_code == 503, answer.text
     if answer.status_code >= 400:
         assert_shape(answer)
+        if answer.json()["error"] == "invalid_body":
+            assert not FOREIGN.search(answer.json()["message"]), answer.text
+
+
+JSON = {"Content-Type": "application/json"}
+FOREIGN = re.compile(
+    r"constrained|function-|literal\[|Input should|valid dictionary|Extra inputs|Field required"
+    r"|JSON decode|Value error|after validation|pydantic|NoneType|Traceback",
+    re.IGNORECASE,
+)
+"""Words of the libraries underneath, which say nothing to who sent the body."""
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "said"),
+    [
+        (
+            "POST /api/clips",
+            {"timeline": [{"time": 0, "emotion": {"label": "joy", "intensity": 2}}]},
+            "timeline.0.emotion.intensity is 2; expected a number of at most 1",
+        ),
+        (
+            "POST /api/clips",
+            {"timeline": [{"time": 0, "emotion": 5}]},
+            "timeline.0.emotion is 5; expected text or an object, {…}",
+        ),
+        ("POST /api/clips", {"timeline": [{"emotion": "joy"}]}, "timeline.0.time is missing"),
+        (
+            "POST /api/sessions/ID/emotions",
+            {"lable": "joy"},
+            "there is no field 'lable'; did you mean 'label' or 'layer'?",
+        ),
+        (
+            "PUT /api/sessions/ID/controls",
+            {"jaw": {"pich": 3}},
+            "there is no field 'pich' in jaw; did you mean 'pitch'?",
+        ),
+        (
+            "PUT /api/sessions/ID/controls",
+            {"layer": "pupet", "fade": -1},
+            "fade is -1; expected a number of at least 0 (and one more thing is wrong)",
+        ),
+        (
+            "PUT /api/sessions/ID/controls",
+            {"action_units": {"AU12": "F"}},
+            "action_units.AU12 is 'F'; expected a number or one of 'A', 'B', 'C', 'D', 'E'",
+        ),
+        (
+            "PUT /api/sessions/ID/controls",
+            {"facs": "6C 12D"},
+            "units are joined by '+': '6C 12D' may mean '6C+12D'",
+        ),
+        ("POST /api/sessions", {"rig": "amaraa"}, "no rig 'amaraa'; did you mean 'amara'"),
+        ("GET /api/rigs/amaraa", None, "no rig 'amaraa'; did you mean 'amara'"),
+        ("GET /api/sesions", None, "nothing at that address; did you mean '/api/sessions'"),
+        ("GET /api/sessions/ID/analysis?wait=ages", None, "wait is 'ages'; expected a number"),
+    ],
+)
+def test_an_error_says_what_was_given_expected_and_to_be_done(
+    client: TestClient, shared_session: str, path: str, body: object, said: str
+) -> None:
+    method, address = path.replace("ID", shared_session).split()
+    answer = client.request(method, address, json=body)
+    assert answer.status_code in (404, 422)
+    assert said in answer.json()["message"]
+    assert_shape(answer)
+
+
+@pytest.mark.parametrize(
+    ("content", "headers", "said"),
+    [
+        ('{"label": "joy"}', {}, "without a content type; send JSON with the header 'Content-Type"),
+        ('{"label": "joy"}', {"Content-Type": "text/plain"}, "as 'text/plain'; send JSON with"),
+        ('{"label": "joy",}', JSON, "the body is not JSON: "),
+        ("", JSON, "the body is empty; send JSON with the header 'Content-Type: application/json'"),
+        ("[1]", JSON, "the body is [1]; expected an object, {…}"),
+    ],
+)
+def test_a_body_that_is_no_json_is_told_so(
+    client: TestClient, shared_session: str, content: str, headers: dict[str, str], said: str
+) -> None:
+    path = f"/api/sessions/{shared_session}/emotions"
+    answer = client.post(path, content=content, headers=headers)
+    assert answer.status_code == 422
+    assert said in answer.json()["message"]
+    assert not FOREIGN.search(answer.text)
 
 
 @pytest.fixture(scope="module")
