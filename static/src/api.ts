@@ -92,6 +92,14 @@ export class Api {
     }>;
   }
 
+  /** What the service is at while it starts; empty once it is ready, or if it does not say. */
+  starting(): Promise<string> {
+    return this.json('GET', 'api/ready').then(
+      () => '',
+      (error: unknown) => (error instanceof ApiError && error.status === 503 ? error.message : ''),
+    );
+  }
+
   openSession(rig: string): Promise<SessionInfo> {
     return this.json('POST', 'api/sessions', { rig }) as Promise<SessionInfo>;
   }

@@ -89,6 +89,9 @@ interface RidingStrands {
   attribute: BufferAttribute;
 }
 
+/** Told how much is done, out of how much. */
+type OnProgress = (done: number, total: number) => void;
+
 const MILLIMETRES = 1000;
 /** How far a file puts the tongue out that does not say [m]. */
 const DEFAULT_TONGUE_THRUST = 0.04;
@@ -131,10 +134,13 @@ export class Face {
 
   /**
    * Load the tissue surface of a rig.
+   * @param onProgress told the bytes that have come, and those that there are, 0 where nobody says.
    * @throws Error when the file cannot be had, or has no skin with a map.
    */
-  static async load(url: string): Promise<Face> {
-    const gltf = await new GLTFLoader().loadAsync(url);
+  static async load(url: string, onProgress: OnProgress = () => undefined): Promise<Face> {
+    const gltf = await new GLTFLoader().loadAsync(url, ({ loaded, total, lengthComputable }) => {
+      onProgress(loaded, lengthComputable ? total : 0);
+    });
     return Face.build(gltf, url);
   }
 
@@ -313,8 +319,8 @@ export class Face {
   }
 
   /** Fetch the face's maps; returns what could not be had, as one sentence. */
-  loadMaps(): Promise<string> {
-    return this.maps.load(this.mapAddresses);
+  loadMaps(onProgress?: OnProgress): Promise<string> {
+    return this.maps.load(this.mapAddresses, onProgress);
   }
 
   /** Take the maps' fading in further; tells whether it has changed what is drawn. */

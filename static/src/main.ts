@@ -10,12 +10,14 @@ import { Face } from './face';
 import './handle';
 import type { Level } from './level';
 import { atLevel, levelFor } from './level';
+import Curtain from './panels/Curtain.svelte';
 import Panels from './panels/Panels.svelte';
 import People from './panels/People.svelte';
 import StatusBar from './panels/StatusBar.svelte';
 import type { FaceState, Hello } from './protocol';
 import { Scene } from './scene';
 import type { Actions } from './state/actions';
+import { fetching, painting, starting } from './state/loading';
 import { describeRig, readable, tissuePatch } from './state/rig';
 import { ViewerState } from './state/viewer.svelte';
 import './style.css';
@@ -33,6 +35,7 @@ viewer.view = page.view;
 document.body.classList.toggle('bare', page.bare);
 
 const PERSON_PAUSE_MS = 350;
+const START_POLL_MS = 500;
 /** What was asked of the person on the stage since they were made; the rest follows sex and age. */
 let wished: Recipe = {};
 let wishes = 0;
@@ -103,6 +106,8 @@ async function locateStream(): Promise<string> {
     });
     if (known !== null) return streamOf(known);
   }
+  viewer.step = { words: `Preparing ${who()}`, share: null };
+  void tellOfStart();
   const opened = await api.openSession(viewer.rigName);
   session = opened.id;
   const address = new URL(window.location.href);
@@ -110,6 +115,22 @@ async function locateStream(): Promise<string> {
   address.searchParams.set('rig', viewer.rigName);
   window.history.replaceState(null, '', address);
   return streamOf(opened);
+}
+
+/** Say what the service is at for as long as it starts: a first start takes a minute. */
+async function tellOfStart(): Promise<void> {
+  for (;;) {
+    const doing = await api.starting();
+    if (doing === '' || viewer.surfaceReady) return;
+    viewer.step = starting(doing);
+    await new Promise((again) => setTimeout(again, START_POLL_MS));
+  }
+}
+
+/** Whom the page is about to show: a person by name, anybody else as a face. */
+function who(): string {
+  const person = viewer.people.find(({ name }) => name === viewer.rigName);
+  return person?.label ?? 'the face';
 }
 
 function streamOf(info: SessionInfo): string {
@@ -130,6 +151,7 @@ async function welcome(hello: Hello): Promise<void> {
     resume?.();
     resume = null;
   } catch (error) {
+    viewer.step = null;
     viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
   }
 }
@@ -138,7 +160,10 @@ async function showFace(address: string): Promise<void> {
   surfaceAddress = address;
   surfaceLoading = true;
   frameSeen = false;
-  const loaded = await Face.load(address).catch((error: unknown) => {
+  viewer.step = fetching(who(), 0, 0);
+  const loaded = await Face.load(address, (bytes, total) => {
+    if (surfaceAddress === address) viewer.step = fetching(who(), bytes, total);
+  }).catch((error: unknown) => {
     // The next hello may try again.
     if (surfaceAddress === address) surfaceAddress = '';
     throw error;
@@ -153,6 +178,7 @@ async function showFace(address: string): Promise<void> {
   scene.add(face.root);
   scene.reframe();
   viewer.surfaceReady = true;
+  viewer.step = null;
   void loadMaps(loaded);
   // The frame that came while loading is still waiting, and is drawn now.
   await scene.rendered();
@@ -200,7 +226,9 @@ function moving(): boolean {
 
 /** Fetch the face's maps while it already shows; without them it stays as it is. */
 async function loadMaps(shown: Face): Promise<void> {
-  const missing = await shown.loadMaps();
+  const missing = await shown.loadMaps((done, maps) => {
+    if (shown === face) viewer.step = done < maps ? painting(done, maps) : null;
+  });
   // A console note, and no notice: the face works without.
   // eslint-disable-next-line no-console
   if (missing !== '') console.warn(missing);
@@ -358,6 +386,8 @@ function shownFace(): Face {
   return face;
 }
 
+element('curtain').textContent = '';
+mount(Curtain, { target: element('curtain'), props: { viewer } });
 if (!page.bare) {
   element('face').addEventListener(
     'pointerdown',

@@ -61,12 +61,22 @@ export class FaceMaps {
 
   /**
    * Fetch the maps of a face, and begin to fade to them once the skin's are there.
+   * @param onProgress told how many have come or failed, and how many there are.
    * @returns what could not be had, as one sentence; vertex colours stay then. Empty if all is well.
    */
-  async load(addresses: Partial<Record<MapName, string>>): Promise<string> {
+  async load(
+    addresses: Partial<Record<MapName, string>>,
+    onProgress: (done: number, total: number) => void = () => undefined,
+  ): Promise<string> {
     const names = Object.keys(addresses) as MapName[];
+    let done = 0;
+    if (names.length > 0) onProgress(0, names.length);
     const results = await Promise.allSettled(
-      names.map((name) => this.loadMap(name, addresses[name]!)),
+      names.map((name) =>
+        this.loadMap(name, addresses[name]!).finally(() => {
+          onProgress(++done, names.length);
+        }),
+      ),
     );
     const missing = names.filter((_, i) => results[i]!.status === 'rejected');
     if (addresses.albedo === undefined || missing.includes('albedo')) this.settled = true;

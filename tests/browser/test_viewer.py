@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -111,6 +113,57 @@ def test_another_client_s_command_is_drawn_too(page: playwright_api.Page, url: s
     assert answer.ok
     settle(page, tick)
     assert height(page, "ch.L") > rest + 1e-3
+
+
+def test_a_visitor_reads_what_is_being_done(page: playwright_api.Page, url: str) -> None:
+    page.add_init_script(
+        """window.__said = [];
+        new MutationObserver(() => {
+          const words = document.querySelector('#curtain span')?.textContent;
+          if (words && !window.__said.includes(words)) window.__said.push(words);
+        }).observe(document, {subtree: true, childList: true, characterData: true});"""
+    )
+    page.goto(url)
+    settle(page)
+    said = page.evaluate("() => window.__said")
+    assert said[0].startswith(("Connecting", "Preparing"))
+    assert any(re.fullmatch(r"Fetching the face, [\d.]+ of [\d.]+ MB", words) for words in said)
+    assert page.locator("#curtain span").count() == 0
+
+
+def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> None:
+    page.goto(url)
+    settle(page)
+    page.get_by_role("button", name="Sean").wait_for()
+    for width, height in ((1280, 800), (1600, 1000)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate("() => window.__viewer.render()")
+        stage = page.locator("#stage").bounding_box()
+        assert stage is not None
+        boxes = [button.bounding_box() for button in page.locator("#people button").all()]
+        assert len(boxes) == 15
+        for before, box in pairwise(boxes):
+            assert before is not None
+            assert box is not None
+            assert before["x"] + before["width"] <= box["x"]
+            assert box["x"] + box["width"] <= stage["x"] + stage["width"]
+            assert box["y"] + box["height"] <= height
+        assert page.locator("footer").bounding_box()["y"] < height - 30  # type: ignore[index]
+
+
+def test_sliders_show_what_an_emotion_plays(page: playwright_api.Page, url: str) -> None:
+    page.goto(url)
+    tick = settle(page)
+    page.get_by_role("button", name="Contempt").click(force=True)
+    settle(page, tick)
+    dimpler = page.get_by_role("slider", name="AU14")
+    playwright_api.expect(dimpler).to_have_attribute(
+        "aria-valuetext", "0.00, the face shows right E 1.00"
+    )
+    line = page.locator("label.slider").filter(has=dimpler)
+    assert line.locator(".played").text_content() == "right E 1.00"
+    share = "line => line.querySelector('i').offsetWidth / line.querySelector('input').offsetWidth"
+    assert line.evaluate(share) > 0.8
 
 
 def test_the_paper_s_face_opens(page: playwright_api.Page, url: str, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import type { Held, Numbers } from '../protocol';
 import type { Group } from './actions';
 import type { AttributeInfo, Recipe } from '../recipe';
+import type { Step } from './loading';
 import type { Rig } from './rig';
 
 /** Someone whose face can be opened. */
@@ -57,6 +58,8 @@ export class ViewerState {
   meeting = $state(false);
   rig = $state.raw<Rig | null>(null);
   surfaceReady = $state(false);
+  /** What is being done before the face is there, or before its skin is; null when all is. */
+  step = $state.raw<Step | null>({ words: 'Connecting to the service', share: null });
   tickRate = $state(0);
   asleep = $state(false);
   /** One sentence about the last thing that went wrong; empty when all is well, or after a while. */
