@@ -7,10 +7,6 @@ BIN := .venv/bin
 STAMPS := .stamps
 VIEWER_SOURCES := $(shell find static -path static/node_modules -prune -o -type f -print)
 
-EMOTIONS := happiness sadness fear anger surprise disgust contempt
-COMBINATIONS := 1E+2E,1E+4E,1D+2D+4D,4E+5E,5E+7E,4E+5D+7E+24D,6E+12E,6E+12E+25E,12E+15E,6D+15E,9E+10E,9D+10D+17D,10E+25E,12C+14E,14D+17D+24D,15E+17E,20E+25E,18E+22D+25D,1E+2E+5E+27E,R12D+L15D
-comma := ,
-
 .PHONY: run test check bench levels sheet portraits measure lock clean chromium
 
 run: $(STAMPS)/python $(STAMPS)/viewer
@@ -38,12 +34,9 @@ measure: $(STAMPS)/python
 
 sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 240 --columns 8
-	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 360 --columns 4 \
-		--only rest,happiness,sadness,fear,anger,surprise,disgust,contempt
-	$(BIN)/risorius sheet -o docs/intensities.jpg --view front --size 240 --columns 7 \
-		--only "$(foreach share,0.4 0.7 1.0,$(foreach emotion,$(EMOTIONS),$(emotion)@$(share)$(comma)))"
-	$(BIN)/risorius sheet -o docs/combinations.jpg --view front --size 280 --columns 5 \
-		--only "$(COMBINATIONS)"
+	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 360 --columns 4 --set emotions
+	$(BIN)/risorius sheet -o docs/intensities.jpg --view front --size 240 --columns 7 --set intensities
+	$(BIN)/risorius sheet -o docs/combinations.jpg --view front --size 280 --columns 5 --set combinations
 	$(BIN)/risorius sheet -o docs/people.jpg --people --only rest --whole \
 		--view front,three-quarter,profile --size 240 --columns 6
 	$(BIN)/risorius sheet -o docs/closeups.jpg --rig standard,mei,ruth,kwame --only rest \

@@ -168,17 +168,25 @@ def sheet(
         str,
         typer.Option(help="Names to show, comma separated: AU12,fear,fear@0.4,rest,6C+12D."),
     ] = "",
+    only_set: Annotated[
+        str, typer.Option("--set", help="Show a set: emotions, intensities, combinations.")
+    ] = "",
     whole: Annotated[
         bool, typer.Option("--whole", help="Show the head, not the face alone.")
     ] = False,
 ) -> None:
     """Draw every action unit and emotion, as the viewer shows them, on one picture."""
+    from .explaining import did_you_mean
     from .sheet import Plan, SheetRefused, draw_sheet
+    from .sheet_sets import SETS
 
+    if only_set and only_set not in SETS:
+        hint = did_you_mean(only_set, list(SETS))
+        _refuse(f"There is no set {only_set!r}{hint or '; there are ' + ', '.join(SETS)}.")
     plan = Plan(
         rigs=() if people else _words(rig),
         views=_words(view),
-        only=_words(only),
+        only=(*SETS.get(only_set, ()), *_words(only)),
         size=size,
         whole=whole,
     )

@@ -14,6 +14,7 @@ from engine import EngineError, builtin_rig
 from .explaining import explain
 from .insight import inverse_of
 from .insight_bodies import InverseRequest
+from .tables import markdown_table
 
 
 class InverseRefused(Exception):
@@ -50,18 +51,18 @@ def inverse_markdown(data: dict[str, Any]) -> str:
     """Return an answer as Markdown tables."""
     kind = "action unit" if data["action_units"] else "muscle"
     found = data["action_units"] or data["activations"]
-    lines = [f"| {kind} | activation |", "|---|---|"]
-    lines += [f"| {name} | {value:.2f} |" for name, value in found.items() if value >= 0.005]
+    moved = [(name, f"{value:.2f}") for name, value in found.items() if value >= 0.005]
     jaw = ", ".join(f"{axis} {value:.1f}" for axis, value in data["jaw"].items())
-    lines += [
-        "",
-        f"Jaw: {jaw}. {data['iterations']} iterations, rms {data['rms_mm']:.2f} mm.",
-        "",
-        "| landmark | wanted, mm | reached, mm | left, mm |",
-        "|---|---|---|---|",
-    ]
+    rows = []
     for mark in data["landmarks"]:
         target = ", ".join("any" if v is None else f"{v:.1f}" for v in mark["target"])
         reached = ", ".join(f"{v:.1f}" for v in mark["reached"])
-        lines.append(f"| {mark['name']} | {target} | {reached} | {mark['residual_mm']:.2f} |")
+        rows.append((mark["name"], target, reached, f"{mark['residual_mm']:.2f}"))
+    lines = [
+        *markdown_table((kind, "activation"), moved),
+        "",
+        f"Jaw: {jaw}. {data['iterations']} iterations, rms {data['rms_mm']:.2f} mm.",
+        "",
+        *markdown_table(("landmark", "wanted, mm", "reached, mm", "left, mm"), rows),
+    ]
     return "\n".join(lines)

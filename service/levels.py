@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 from engine import LEVELS, Recipe, Rig, rig_from_recipe, surface_to_glb, textures_of
 
 from .bench import machine
+from .tables import markdown_table
 
 Stage = Callable[[str], None]
 _MEGABYTE = 1e6
@@ -97,27 +98,44 @@ def _timed(make: Callable[[], T]) -> tuple[T, float]:
 def markdown(figures: dict[str, Any]) -> str:
     """Return the figures as two Markdown tables, under the machine's name."""
     here = figures["machine"]
-    lines = [
-        f"Measured on {here['processor']} ({here['cores']} cores), Python {here['python']}; "
-        "seconds are the processor's.",
-        "",
-        "| level | skin vertices | skin triangles | vertices with parts | triangles with parts "
-        "| surface.glb, MB | first, s | a person, s | cached, s |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    for row in figures["levels"]:
-        vertices = row["skin_vertices"] + row["part_vertices"]
-        triangles = row["skin_triangles"] + row["part_triangles"]
-        lines.append(
-            f"| {row['level']} | {row['skin_vertices']:,} | {row['skin_triangles']:,} "
-            f"| {vertices:,} | {triangles:,} | {row['surface_glb_bytes'] / _MEGABYTE:.1f} "
-            f"| {row['first_s']:.1f} | {row['person_s']:.2f} | {row['cached_s']:.2f} |"
+    head = (
+        "level",
+        "skin vertices",
+        "skin triangles",
+        "vertices with parts",
+        "triangles with parts",
+        "surface.glb, MB",
+        "first, s",
+        "a person, s",
+        "cached, s",
+    )
+    levels = [
+        (
+            row["level"],
+            f"{row['skin_vertices']:,}",
+            f"{row['skin_triangles']:,}",
+            f"{row['skin_vertices'] + row['part_vertices']:,}",
+            f"{row['skin_triangles'] + row['part_triangles']:,}",
+            f"{row['surface_glb_bytes'] / _MEGABYTE:.1f}",
+            f"{row['first_s']:.1f}",
+            f"{row['person_s']:.2f}",
+            f"{row['cached_s']:.2f}",
         )
+        for row in figures["levels"]
+    ]
     textures = figures["textures"]
-    lines += ["", "| texture | kB |", "|---|---|"]
-    for name, size in textures["bytes"].items():
-        lines.append(f"| {name} | {size / 1000:.0f} |")
-    total = sum(textures["bytes"].values()) / 1000
     baked, cached = textures["baked_s"], textures["cached_s"]
-    lines.append(f"| all, baked in {baked:.1f} s, cached {cached:.2f} s | {total:.0f} |")
-    return "\n".join(lines)
+    sizes = [
+        *textures["bytes"].items(),
+        (f"all, baked in {baked:.1f} s, cached {cached:.2f} s", sum(textures["bytes"].values())),
+    ]
+    return "\n".join(
+        [
+            f"Measured on {here['processor']} ({here['cores']} cores), Python {here['python']}; "
+            "seconds are the processor's.",
+            "",
+            *markdown_table(head, levels),
+            "",
+            *markdown_table(("texture", "kB"), ((n, f"{s / 1000:.0f}") for n, s in sizes)),
+        ]
+    )

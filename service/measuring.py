@@ -7,6 +7,8 @@ from typing import Any
 
 from engine import Keyframe, Rig, builtin_rig, judge, measure_units, people
 
+from .tables import markdown_table
+
 Stage = Callable[[str], None]
 
 
@@ -56,30 +58,42 @@ def measure_rig(rig: Rig, show: Stage) -> dict[str, Any]:
 
 def markdown(figures: dict[str, Any]) -> str:
     """Return the figures as two Markdown tables."""
-    lines = [
-        "| AU | landmark | human motion | measured |",
-        "|---|---|---|---|",
-    ]
+    landmarks = []
     for row in figures["landmarks"]:
         verdict = (
             "" if row["in_range"] else (" (out)" if row["direction_right"] else " (WRONG WAY)")
         )
-        lines.append(
-            f"| {row['action_unit']} | {row['what']} | {_span(row['low_mm'], row['high_mm'])} "
-            f"{row['scale']} | {row['measured_mm']:.1f} {row['scale']}{verdict} |"
+        span = f"{_span(row['low_mm'], row['high_mm'])} {row['scale']}"
+        measured = f"{row['measured_mm']:.1f} {row['scale']}{verdict}"
+        landmarks.append((row["action_unit"], row["what"], span, measured))
+    tissue = [
+        (
+            row["expression"],
+            row["folded_triangles"],
+            f"{row['roughness']:.3f}",
+            f"{row['asymmetry_mm']:.2f}",
+            f"{row['residual_speed_mm_s']:.2f}",
+            row["settling_ms"],
+            f"{row['path_dependence_mm']:.2f}",
         )
-    lines += [
-        "",
-        "| expression | folded | roughness | asymmetry, mm | mm/s | settling, ms | path, mm |",
-        "|---|---|---|---|---|---|---|",
+        for row in figures["tissue"]
     ]
-    for row in figures["tissue"]:
-        lines.append(
-            f"| {row['expression']} | {row['folded_triangles']} | {row['roughness']:.3f} "
-            f"| {row['asymmetry_mm']:.2f} | {row['residual_speed_mm_s']:.2f} "
-            f"| {row['settling_ms']} | {row['path_dependence_mm']:.2f} |"
-        )
-    return "\n".join(lines)
+    head = (
+        "expression",
+        "folded",
+        "roughness",
+        "asymmetry, mm",
+        "mm/s",
+        "settling, ms",
+        "path, mm",
+    )
+    return "\n".join(
+        [
+            *markdown_table(("AU", "landmark", "human motion", "measured"), landmarks),
+            "",
+            *markdown_table(head, tissue),
+        ]
+    )
 
 
 def measure_people(show: Stage) -> dict[str, dict[str, list[float | bool]]]:
@@ -98,14 +112,12 @@ def measure_people(show: Stage) -> dict[str, dict[str, list[float | bool]]]:
 def people_markdown(figures: dict[str, dict[str, list[float | bool]]]) -> str:
     """Return the people's figures as a Markdown table, a landmark a row."""
     names = list(figures)
-    lines = [f"| motion, mm | {' | '.join(names)} |", "|---|" + "---|" * len(names)]
+    rows = []
     for landmark in figures[names[0]]:
-        cells = [
-            f"{value:.1f}" + ("" if right else " (WRONG WAY)")
-            for value, right in (figures[name][landmark] for name in names)
-        ]
-        lines.append(f"| {landmark} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+        found = (figures[name][landmark] for name in names)
+        cells = (f"{value:.1f}" + ("" if right else " (WRONG WAY)") for value, right in found)
+        rows.append((landmark, *cells))
+    return "\n".join(markdown_table(("motion, mm", *names), rows))
 
 
 def _span(low: float, high: float) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import structlog
+from fastapi import FastAPI
 from PIL import Image
 from starlette.testclient import TestClient
 
@@ -16,6 +17,7 @@ import service.rendering
 import service.rigs
 from engine import Rig, texture_names
 from service.app import create_app
+from service.components import Components
 from service.settings import Settings
 
 MakeClient = Callable[..., TestClient]
@@ -73,6 +75,13 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     with TestClient(app, base_url=LOCAL) as running:
         until(lambda: running.get("/api/ready").status_code == 200, seconds=120)
         yield running
+
+
+def parts_of(client: TestClient) -> Components:
+    """Return the parts of a running application, for what its API does not show."""
+    assert isinstance(client.app, FastAPI)
+    parts: Components = client.app.state.parts
+    return parts
 
 
 @pytest.fixture

@@ -94,6 +94,11 @@ def test_wrong_usage_ends_with_2(arguments: tuple[str, ...]) -> None:
     refused(run(*arguments))
 
 
+def test_a_sheet_says_which_sets_there_are(tmp_path: Path) -> None:
+    said = refused(run("sheet", "-o", tmp_path / "a.png", "--set", "emotion"))
+    assert "did you mean 'emotions'?" in said
+
+
 def test_a_sheet_says_which_views_there_are(tmp_path: Path) -> None:
     assert "three-quarter" in refused(run("sheet", "-o", tmp_path / "a.png", "--view", "behind"))
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import LOCAL, settings_in, until
+from conftest import LOCAL, parts_of, settings_in, until
 from starlette.testclient import TestClient
 
 from engine import Keyframe, Rig, Simulator, Timeline, record
@@ -19,7 +19,7 @@ from service.store import Store
 
 
 def live(client: TestClient, session: str) -> Session:
-    parts = client.app.state.parts  # type: ignore[attr-defined]
+    parts = parts_of(client)
     return client.portal.call(parts.sessions.get, session)  # type: ignore[union-attr]
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import LOCAL, settings_in
+from conftest import LOCAL, parts_of, settings_in
 from sqlalchemy import text
 from starlette.testclient import TestClient
 
@@ -164,7 +164,7 @@ def test_a_person_is_found_by_an_id_that_this_store_has_not_seen(tmp_path: Path)
     with TestClient(create_app(settings_in(tmp_path)), base_url=LOCAL) as client:
         rig = client.get("/api/rigs/amara").json()["id"]
         session = client.post("/api/sessions", json={"rig": "amara"}).json()["id"]
-        store = client.app.state.parts.store  # type: ignore[attr-defined]
+        store = parts_of(client).store
         with store.engine.begin() as connection:
             connection.execute(text("DELETE FROM named_rigs"))
     shutil.rmtree(tmp_path / "cache", ignore_errors=True)

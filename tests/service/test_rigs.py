@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import LOCAL, settings_in, until
+from conftest import LOCAL, parts_of, settings_in, until
 from starlette.testclient import TestClient
 
 from service.app import create_app
@@ -247,7 +247,7 @@ def test_live_edits_never_use_up_the_rigs(tmp_path: Path, monkeypatch: pytest.Mo
 
 def wait_for_row(client: TestClient, session: str, rig: str) -> None:
     """Wait until the store knows that the session is on `rig`."""
-    store = client.app.state.parts.store  # type: ignore[attr-defined]
+    store = parts_of(client).store
     until(lambda: store.session(session).rig == rig)
 
 
@@ -322,7 +322,7 @@ def test_a_level_of_detail_has_its_own_tag(client: TestClient) -> None:
 
 def test_an_id_of_an_older_engine_is_found(tmp_path: Path) -> None:
     with TestClient(create_app(settings_in(tmp_path)), base_url=LOCAL) as client:
-        store = client.app.state.parts.store  # type: ignore[attr-defined]
+        store = parts_of(client).store
         store.name_rig("0123456789abcdef", "standard")
         store.add_rig("fedcba9876543210", base="standard", changes={"tissue": {"damping": 50}})
         standard = client.get("/api/rigs/standard").json()

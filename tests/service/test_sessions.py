@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from conftest import until
+from conftest import parts_of, until
 from starlette.testclient import TestClient
 
 
@@ -44,7 +44,7 @@ def test_a_session_runs_the_model_it_asks_for(client: TestClient) -> None:
     session = answer.json()["id"]
     own = client.get("/api/rigs/standard").json()["model"]
     assert answer.json()["model"] == {**own, "integrator": "symplectic_euler"}
-    home = client.app.state.parts.runner._home[session]  # type: ignore[attr-defined]
+    home = parts_of(client).runner._home[session]
     assert home.simulator.model.integrator == "symplectic_euler"
     control(client, session, action_units={"AU12": 1.0})
     client.delete(f"/api/sessions/{session}")
@@ -262,7 +262,7 @@ def test_a_busy_database_does_not_end_the_beat(
     def busy(*_: object, **__: object) -> None:
         raise OSError("the database is locked")
 
-    sessions = client.app.state.parts.sessions  # type: ignore[attr-defined]
+    sessions = parts_of(client).sessions
     monkeypatch.setattr(sessions._store, "remove_idle_sessions", busy)
     sessions._forget_sleepers()
     assert not any(task.done() for task in sessions._tasks)

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from engine import builtin_rig, parse_facs
 from service.sheet import Plan, SheetRefused, _fitting, _frame_of, _slug, draw_sheet, poses_of, tile
+from service.sheet_sets import SETS
 
 RIG = {
     "action_units": [{"name": "AU1", "title": "Inner brow raiser"}],
@@ -33,6 +35,15 @@ def test_a_sheet_has_only_what_is_asked() -> None:
     poses = poses_of(RIG, ("joy", "1C+L12D"))
     assert poses[0].emotion == "happiness"
     assert poses[1].controls == {"facs": "1C+L12D"}
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_a_set_is_of_what_the_rig_can_show(name: str) -> None:
+    rig = builtin_rig("standard")
+    assert len(set(SETS[name])) == len(SETS[name])
+    for pose in SETS[name]:
+        if pose.partition("@")[0] not in ("rest", *rig.emotions):
+            assert all(rig.resolve_unit(term.key) for term in parse_facs(pose))
 
 
 def test_a_sheet_shows_weak_emotions() -> None:

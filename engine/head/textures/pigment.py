@@ -61,20 +61,6 @@ def linear_of_lab(lab: FloatArray) -> FloatArray:
     return np.asarray(np.clip(xyz @ np.linalg.inv(XYZ_OF_LINEAR).T, 0.0, 1.0))
 
 
-def lab_of_linear(linear: FloatArray) -> FloatArray:
-    """Return CIELAB under D65 of linear sRGB (..., 3)."""
-    xyz = linear @ XYZ_OF_LINEAR.T / WHITE
-    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
-    rows = [116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])]
-    return np.asarray(np.stack(rows, axis=-1))
-
-
-def typology_angle(linear: FloatArray) -> FloatArray:
-    """Return the individual typology angle [degrees] of linear colours (..., 3)."""
-    lab = lab_of_linear(linear)
-    return np.asarray(np.degrees(np.arctan2(lab[..., 0] - 50, lab[..., 2])))
-
-
 def srgb(linear: FloatArray) -> FloatArray:
     """Return linear light 0..1 as sRGB 0..1 (IEC 61966-2-1)."""
     low = linear <= 0.0031308

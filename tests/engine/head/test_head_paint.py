@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from measured_color import lab_of_linear
 from scipy.spatial import cKDTree
 
 from engine.arrays import FloatArray
@@ -13,7 +14,6 @@ from engine.head import Head, person_head
 from engine.head.identity.people import people
 from engine.head.recipe import STANDARD, Recipe
 from engine.head.textures.albedo import vertex_colors
-from engine.head.textures.pigment import lab_of_linear
 from engine.head.textures.zones import Surface, zones_of
 
 

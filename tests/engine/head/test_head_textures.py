@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from glb_tools import assert_valid
+from measured_color import typology_angle
 from PIL import Image
 
 from engine.gltf import face_to_glb
@@ -16,7 +17,6 @@ from engine.head import Head, Recipe
 from engine.head.recipe import SKIN_TONES, STANDARD
 from engine.head.textures import TEXTURE_NAMES, head_textures
 from engine.head.textures.albedo import albedo
-from engine.head.textures.pigment import typology_angle
 from engine.head.textures.relief import relief
 from engine.head.textures.texels import Texels
 from engine.head.textures.zones import Surface, Zones, zones_of
