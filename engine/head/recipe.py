@@ -161,7 +161,7 @@ class Recipe:
             not given.
         eye_color: One of `EYE_COLORS`.
         hair_color: One of `HAIR_COLORS`, before it greys.
-        hair_style: One of `HAIR_STYLES`.
+        hair_style: One of `HAIR_STYLES`; goes with sex and skin where it is not given.
         grayness: Share of grey hair, 0 to 1; goes with age where it is not given.
         asymmetry: Natural difference of the two sides, seen only; 0 none, 1 usual.
         seed: Chooses the small things: freckles, pores, the sides' difference.
@@ -372,8 +372,21 @@ def usual_stubble(recipe: Recipe) -> float:
     return round(0.35 * recipe.sex, 3)
 
 
-USUAL: Mapping[str, Callable[[Recipe], float]] = {
+COILED_FROM = 0.9
+"""Tone from which curls are the likelier guess, for hair coils most where skin is darkest (by
+origin: Loussouarn et al. 2007, "Worldwide diversity of hair curliness")."""
+
+
+def usual_hair_style(recipe: Recipe) -> str:
+    """Return a common way to wear hair for the recipe's sex and skin: longer on women."""
+    if recipe.sex >= 0.5:
+        return "crop"
+    return "curly" if recipe.skin >= COILED_FROM else "bob"
+
+
+USUAL: Mapping[str, Callable[[Recipe], float | str]] = {
     "grayness": usual_grayness,
     "stubble": usual_stubble,
+    "hair_style": usual_hair_style,
 }
-"""Attributes that go with sex and age unless they are given."""
+"""Attributes that go with sex, age and skin unless they are given."""
