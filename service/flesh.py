@@ -19,6 +19,8 @@ from engine import (
     random_mixes,
 )
 
+from .tables import markdown_table
+
 Stage = Callable[[str], None]
 
 HISTORIES = 10
@@ -44,6 +46,30 @@ LACKING: Mapping[str, Mapping[str, object]] = {
 """Edits that take one of the terms beyond the paper away, and one that takes all."""
 LACKING_UNITS = ("AU1", "AU4", "AU6", "AU9", "AU10", "AU12", "AU15", "AU17", "AU18", "AU23", "AU26")
 COST_TICKS = 20
+_EXPRESSION_HEAD = (
+    "expression",
+    "inverted",
+    "least element",
+    "volume",
+    "worst region",
+    "folds",
+    "roughness",
+    "drawn",
+    "left-right, mm",
+    "mm/s",
+    "path, mm",
+    "through",
+)
+_TERM_HEAD = (
+    "tissue",
+    "inverted",
+    "folds",
+    "volume, %",
+    "roughness",
+    "mm/s",
+    "left-right, mm",
+    "cost of a substep",
+)
 
 
 def measure_flesh(rig: Rig, mixes: int, show: Stage) -> dict[str, Any]:
@@ -161,34 +187,45 @@ def _substep_costs(rigs: Mapping[str, Rig]) -> dict[str, float]:
 
 def flesh_markdown(figures: dict[str, Any]) -> str:
     """Return the figures as Markdown tables."""
-    lines = [
-        "| expression | inverted | least element | volume | worst region | folds | roughness "
-        "| drawn | left-right, mm | mm/s | path, mm | through |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|",
-    ]
+    expressions = []
     for name, row in figures["expressions"].items():
         folds = ", ".join(f"{count} {region}" for region, count in row["folds"].items()) or "0"
-        lines.append(
-            f"| {name} | {row['inverted']} | {row['least_share']:.2f} "
-            f"| {row['volume_percent']:+.1f} % "
-            f"| {row['worst_region']} {row['worst_region_percent']:+.0f} % | {folds} "
-            f"| {row['roughness']:.3f} | {row['drawn_roughness']:.3f} "
-            f"| {row['asymmetry_mm']:.2f} | {row['speed_mm_s']:.2f} | {row['path_mm']:.2f} "
-            f"| {sum(row['through'].values())} |"
+        expressions.append(
+            (
+                name,
+                row["inverted"],
+                f"{row['least_share']:.2f}",
+                f"{row['volume_percent']:+.1f} %",
+                f"{row['worst_region']} {row['worst_region_percent']:+.0f} %",
+                folds,
+                f"{row['roughness']:.3f}",
+                f"{row['drawn_roughness']:.3f}",
+                f"{row['asymmetry_mm']:.2f}",
+                f"{row['speed_mm_s']:.2f}",
+                f"{row['path_mm']:.2f}",
+                sum(row["through"].values()),
+            )
         )
-    mixes = figures["mixes"]
-    lines += ["", "| random mixes of 2 to 5 units | |", "|---|---|"]
-    lines += [f"| {name.replace('_', ' ')} | {value:g} |" for name, value in mixes.items()]
-    lines += [
-        "",
-        "| tissue | inverted | folds | volume, % | roughness | mm/s | left-right, mm "
-        "| cost of a substep |",
-        "|---|---|---|---|---|---|---|---|",
+    mixes = [(name.replace("_", " "), f"{value:g}") for name, value in figures["mixes"].items()]
+    terms = [
+        (
+            name,
+            row["inverted"],
+            row["folds"],
+            f"{row['volume_percent']:.1f}",
+            f"{row['roughness']:.3f}",
+            f"{row['speed_mm_s']:.2f}",
+            f"{row['asymmetry_mm']:.2f}",
+            f"{row['cost']:.2f}",
+        )
+        for name, row in figures["terms"].items()
     ]
-    for name, row in figures["terms"].items():
-        lines.append(
-            f"| {name} | {row['inverted']} | {row['folds']} | {row['volume_percent']:.1f} "
-            f"| {row['roughness']:.3f} | {row['speed_mm_s']:.2f} | {row['asymmetry_mm']:.2f} "
-            f"| {row['cost']:.2f} |"
-        )
-    return "\n".join(lines)
+    return "\n".join(
+        [
+            *markdown_table(_EXPRESSION_HEAD, expressions),
+            "",
+            *markdown_table(("random mixes of 2 to 5 units", ""), mixes),
+            "",
+            *markdown_table(_TERM_HEAD, terms),
+        ]
+    )

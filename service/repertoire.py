@@ -16,6 +16,8 @@ from engine import (
     Separability,
 )
 
+from .tables import markdown_table
+
 UNITS_COMMAND = "risorius units"
 SEPARABILITY_COMMAND = "risorius separability"
 _REGION_TITLES: Mapping[str, str] = {
@@ -50,11 +52,10 @@ def units_markdown(rig: Rig) -> str:
         for unit in units:
             lines += _unit(rig, unit)
     lines += ["", "## Combinations", "", "Everything else adds up.", ""]
-    lines += ["| units | look | rule | source |", "|---|---|---|---|"]
-    lines += [
-        f"| {rule.name} | {rule.look} | {'; '.join(_rule(rule))} | {rule.source} |"
-        for rule in rig.combinations
+    rules = [
+        (rule.name, rule.look, "; ".join(_rule(rule)), rule.source) for rule in rig.combinations
     ]
+    lines += markdown_table(("units", "look", "rule", "source"), rules)
     return "\n".join(lines)
 
 
@@ -77,17 +78,17 @@ def _unit(rig: Rig, unit: ActionUnit) -> list[str]:
         f"{unit.timing}.",
         "",
     ]
-    lines += ["| moves | weight | source |", "|---|---|---|"]
     air = {
         muscle.name.partition(".")[0] for muscle in rig.muscles if isinstance(muscle, AirPressure)
     }
+    moves = []
     for muscle, weight in unit.muscles.items():
         name = f"*{muscle}*" if muscle in air else muscle
-        lines.append(f"| {name} | {weight:g} | {unit.sources.get(muscle, unit.source)} |")
+        moves.append((name, f"{weight:g}", unit.sources.get(muscle, unit.source)))
     for place, value in unit.pose.items():
         scale = "mm" if place.endswith("thrust") else "°"
-        lines.append(f"| {place} | {value:g} {scale} | {unit.source} |")
-    return lines
+        moves.append((place, f"{value:g} {scale}", unit.source))
+    return [*lines, *markdown_table(("moves", "weight", "source"), moves)]
 
 
 def _rule(rule: Combination) -> Iterator[str]:
@@ -116,16 +117,15 @@ def separability_markdown(found: Separability) -> str:
         "",
         "## Most alike",
         "",
-        "| units | similarity |",
-        "|---|---|",
     ]
-    lines += [f"| {one}, {other} | {value:.2f} |" for one, other, value in found.pairs()[:_CLOSEST]]
+    pairs = ((f"{one}, {other}", f"{v:.2f}") for one, other, v in found.pairs()[:_CLOSEST])
+    lines += markdown_table(("units", "similarity"), pairs)
     lines += ["", "## All pairs, in hundredths", ""]
-    lines += [f"| AU | {' | '.join(numbers)} |", "|---|" + "---|" * len(numbers)]
+    rows = []
     for row, number in enumerate(numbers):
         cells = [f"{100 * value:.0f}".replace("-0", "0") for value in found.cosines[row, : row + 1]]
-        lines.append(f"| **{number}** | {' | '.join([*cells, *[''] * (len(numbers) - row - 1)])} |")
-    return "\n".join(lines)
+        rows.append((f"**{number}**", *cells, *[""] * (len(numbers) - row - 1)))
+    return "\n".join([*lines, *markdown_table(("AU", *numbers), rows)])
 
 
 def _span(low: float, high: float) -> str:

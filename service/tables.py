@@ -24,5 +24,4 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> lis
 
 
 def _line(cells: Iterable[object]) -> str:
-    # A column without a title is "| |", as in the source that people read.
-    return "".join(f"| {cell} " if str(cell) else "| " for cell in cells) + "|"
+    return "".join(f"| {cell} " for cell in cells) + "|"
