@@ -147,6 +147,7 @@ async function welcome(hello: Hello): Promise<void> {
   try {
     // A live edit moves the session to another rig on the same surface; only a true hello may change it.
     if (hello.type === 'hello' && address !== surfaceAddress) await showFace(address);
+    else if (!surfaceLoading) viewer.step = null;
     if (hello.rig !== rigId) await showRig(hello.rig, hello.type === 'hello');
     resume?.();
     resume = null;

@@ -131,6 +131,26 @@ def test_a_visitor_reads_what_is_being_done(page: playwright_api.Page, url: str)
     assert page.locator("#curtain span").count() == 0
 
 
+def test_a_visitor_reads_what_a_starting_service_is_at(page: playwright_api.Page, url: str) -> None:
+    starting = {"error": "not_ready", "message": "the service is compiling the simulation"}
+    page.route("**/api/ready", lambda route: route.fulfill(status=503, json=starting))
+    page.route("**/api/sessions", lambda _: None)  # A first session waits for the first rig.
+    page.goto(url)
+    said = page.locator("#curtain span")
+    playwright_api.expect(said).to_have_text("The service is starting: compiling the simulation")
+    page.unroute_all(behavior="ignoreErrors")
+
+
+def test_a_session_that_was_closed_is_opened_anew(page: playwright_api.Page, url: str) -> None:
+    page.goto(url)
+    settle(page)
+    page.wait_for_function("() => window.__viewer.textured")
+    session = page.evaluate("() => window.__viewer.session")
+    page.request.delete(f"{url}/api/sessions/{session}")
+    page.wait_for_function("id => window.__viewer.session !== id", arg=session)
+    playwright_api.expect(page.locator(".status")).to_have_attribute("data-busy", "false")
+
+
 def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> None:
     page.goto(url)
     settle(page)
