@@ -32,6 +32,9 @@ levels: $(STAMPS)/python
 measure: $(STAMPS)/python
 	$(BIN)/risorius measure
 
+BROW_MUSCLES := "frontalis_medial": 0.9, "frontalis_lateral": 0.9, "corrugator_supercilii": 0.9, \
+	"procerus": 0.9, "depressor_supercilii": 0.9
+
 sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 240 --columns 8
 	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 360 --columns 4 --set emotions
@@ -41,6 +44,17 @@ sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 		--view front,three-quarter,profile --size 240 --columns 6
 	$(BIN)/risorius sheet -o docs/closeups.jpg --rig standard,mei,ruth,kwame --only rest \
 		--view eye,mouth,ear,profile --size 300 --columns 4
+	$(BIN)/risorius sheet -o docs/palsy.jpg --only rest,6E+12E,1E+2E,43E --view front --size 280 --columns 4 \
+		--edit '{"palsy": {"side": "left", "grade": "III"}}' \
+		--edit '{"palsy": {"side": "left", "grade": "VI"}}'
+	$(BIN)/risorius sheet -o docs/botulinum.jpg --only rest,1E+2E,4E --view front --size 280 --columns 3 \
+		--edit '{"name": "relaxed", "relaxed": {$(BROW_MUSCLES)}}'
+	$(BIN)/risorius sheet -o docs/tissue-age.jpg --only rest,6E+12E,4E --view front --size 240 --columns 3 \
+		--edit '{"tissue_age": 22}' --edit '{"tissue_age": 50}' --edit '{"tissue_age": 78}' \
+		--edit '{"recipe": {"age": 78}}'
+	$(BIN)/risorius sheet -o docs/tissue-regions.jpg --only 12E,18E,27E --view front --size 280 --columns 3 \
+		--edit '{"name": "stiff left", "tissue": {"region_stiffness": {"cheek.L": 10, "nasolabial.L": 10, "lip.L": 10}}}' \
+		--edit '{"name": "lax left", "tissue": {"region_laxity": {"cheek.L": 1, "nasolabial.L": 1, "lip.L": 1}}}'
 
 # The people's pictures in the viewer.
 portraits: $(STAMPS)/python-dev $(STAMPS)/viewer chromium

@@ -52,7 +52,8 @@ def _log_to_stderr() -> None:
 
 
 def _refuse(sentence: str) -> NoReturn:
-    _console.print(escape(sentence), style="red", soft_wrap=True)
+    whole = sentence.removesuffix(".") if sentence.endswith("?.") else sentence
+    _console.print(escape(whole), style="red", soft_wrap=True)
     raise typer.Exit(_REFUSED)
 
 
@@ -155,6 +156,13 @@ def sheet(
     people: Annotated[
         bool, typer.Option("--people", help="Show everyone who comes along.")
     ] = False,
+    edit: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Show the rigs changed as well: a body of POST /api/rigs, such as"
+            """ '{"palsy": {"side": "left", "grade": "IV"}}'; may be repeated."""
+        ),
+    ] = None,
     columns: Annotated[int, typer.Option(min=1, max=20, help="Pictures in a row.")] = 6,
     size: Annotated[int, typer.Option(min=64, max=1024, help="Side of a picture, pixels.")] = 320,
     view: Annotated[
@@ -178,17 +186,23 @@ def sheet(
     """Draw every action unit and emotion, as the viewer shows them, on one picture."""
     from .explaining import did_you_mean
     from .sheet import Plan, SheetRefused, draw_sheet
+    from .sheet_edits import EditRefused, read_edits
     from .sheet_sets import SETS
 
     if only_set and only_set not in SETS:
         hint = did_you_mean(only_set, list(SETS))
         _refuse(f"There is no set {only_set!r}{hint or '; there are ' + ', '.join(SETS)}.")
+    try:
+        edits = read_edits(edit or ())
+    except EditRefused as refused:
+        _refuse(str(refused))
     plan = Plan(
         rigs=() if people else _words(rig),
         views=_words(view),
         only=(*SETS.get(only_set, ()), *_words(only)),
         size=size,
         whole=whole,
+        edits=edits,
     )
     progress = Progress(TextColumn("{task.description}"), BarColumn(), console=_console)
     try:

@@ -16,6 +16,7 @@ from .app import create_app
 from .browser import NoBrowser, chromium
 from .server import running
 from .settings import Settings
+from .sheet_edits import Edit
 
 if TYPE_CHECKING:
     from playwright.sync_api import FloatRect, Page
@@ -71,6 +72,7 @@ class Plan:
         only: Labels of the poses; all when empty.
         size: Side of a picture [pixels].
         whole: Show the head with its hair and neck, not the face alone.
+        edits: Each shown on a rig derived from every one of `rigs`, after the rig itself.
     """
 
     rigs: Sequence[str]
@@ -78,6 +80,7 @@ class Plan:
     only: Sequence[str]
     size: int
     whole: bool = False
+    edits: Sequence[Edit] = ()
 
 
 def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
@@ -192,25 +195,39 @@ def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[
     """Put each pose on each face, and take its pictures once it has settled."""
     page.set_default_timeout(_TIMEOUT_MS)
     rigs = plan.rigs or _people(page, url)
-    for number, rig in enumerate(rigs):
-        show(f"building {rig}", number / len(rigs))
-        poses = poses_of(_call(page, "GET", f"{url}/api/rigs/{rig}"), plan.only)
-        session = _call(page, "POST", f"{url}/api/sessions", {"rig": rig})["id"]
+    faces = [(rig, edit) for rig in rigs for edit in (None, *plan.edits)]
+    for number, (rig, edit) in enumerate(faces):
+        name = name_of(rig, edit, several=len(rigs) > 1)
+        show(f"building {name}", number / len(faces))
+        if edit is None:
+            shown = _call(page, "GET", f"{url}/api/rigs/{rig}")
+        else:
+            shown = _call(page, "POST", f"{url}/api/rigs", {**edit.changes, "base": rig})
+        poses = poses_of(shown, plan.only)
+        session = _call(page, "POST", f"{url}/api/sessions", {"rig": shown["id"]})["id"]
         page.goto(f"{url}/?session={session}&bare=1&still=1&dpr=1")
         page.wait_for_function(_SETTLED, arg=-1)
         for index, pose in enumerate(poses):
-            show(f"{rig}: {pose.label}", (number + index / len(poses)) / len(rigs))
+            show(f"{name}: {pose.label}", (number + index / len(poses)) / len(faces))
             tick = _command(page, f"{url}/api/sessions/{session}", pose)
             page.wait_for_function(_SETTLED, arg=tick)
             for view in plan.views:
                 page.evaluate("view => window.__viewer.setView(view)", view)
                 page.evaluate("() => window.__viewer.render()")
-                named = [rig] * (len(rigs) > 1) + [view] * (len(plan.views) > 1)
+                named = [name] * (len(faces) > 1) + [view] * (len(plan.views) > 1)
                 if len(poses) > 1 or not named:
-                    named.insert(len(rigs) > 1, pose.label)
+                    named.insert(len(faces) > 1, pose.label)
                 whole = plan.whole or view in CLOSE_UPS
-                yield " ".join(named), page.screenshot(clip=_frame_of(_side(page), whole))
+                label = (", " if plan.edits else " ").join(named)
+                yield label, page.screenshot(clip=_frame_of(_side(page), whole))
         _call(page, "DELETE", f"{url}/api/sessions/{session}")
+
+
+def name_of(rig: str, edit: Edit | None, *, several: bool) -> str:
+    """Return what a sheet calls a face: the rig, or what was done to it, or both of several."""
+    if edit is None:
+        return rig
+    return f"{rig}, {edit.label}" if several else edit.label
 
 
 def _side(page: Page) -> float:

@@ -103,6 +103,11 @@ def test_a_sheet_says_which_views_there_are(tmp_path: Path) -> None:
     assert "three-quarter" in refused(run("sheet", "-o", tmp_path / "a.png", "--view", "behind"))
 
 
+def test_a_sheet_says_what_is_no_edit(tmp_path: Path) -> None:
+    said = refused(run("sheet", "-o", tmp_path / "a.png", "--edit", '{"palsi": {}}'))
+    assert said.rstrip().endswith("did you mean 'palsy' or 'passing'?")
+
+
 def test_only_one_worker_is_served(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "one worker" in refused(run("serve", "--workers", 2))
     monkeypatch.setenv("WEB_CONCURRENCY", "4")
