@@ -25,7 +25,7 @@ from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .head.textures import head_textures
-from .inverse import Inverse, invert
+from .inverse import Inverse, Response, invert, question_of, response_of, search_for
 from .jaw import JawHinge
 from .kept import keep, read_kept
 from .landmarks import LANDMARKS_68, landmarks_68
@@ -88,6 +88,7 @@ __all__ = [
     "Person",
     "Pose",
     "Recipe",
+    "Response",
     "Rig",
     "Separability",
     "Simulator",
@@ -116,12 +117,15 @@ __all__ = [
     "path_dependence",
     "people",
     "plain_changes",
+    "question_of",
     "random_mixes",
     "read_kept",
     "recipe_attributes",
     "record",
+    "response_of",
     "rig_from_recipe",
     "rig_to_glb",
+    "search_for",
     "separability",
     "settled",
     "settled_units",

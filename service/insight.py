@@ -19,10 +19,14 @@ from engine import (
     EngineError,
     Inverse,
     Model,
+    Response,
     Rig,
     UnitBasis,
     analyze,
     invert,
+    question_of,
+    response_of,
+    search_for,
     unit_basis,
 )
 
@@ -35,9 +39,12 @@ from .shelf import Shelf
 _LOG = structlog.get_logger("service")
 _BASES_IN_MEMORY = 8
 _BASES_WAITING = 4
+_RESPONSES_IN_MEMORY = 4
+_RETRY_SECONDS = 2
 _THREADS = max(1, (os.cpu_count() or 2) - 1)
 """Cores that settle a rig's units: live faces keep one, and go first on the others."""
 Result = TypeVar("Result")
+Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +70,7 @@ class Insight:
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="insight")
         self._measuring = LatestFirst("measuring", most=_BASES_WAITING)
         self._bases: Shelf[UnitBasis] = Shelf(_BASES_IN_MEMORY, self._measuring)
+        self._responses: Shelf[Response] = Shelf(_RESPONSES_IN_MEMORY, self._measuring)
         self._shares: dict[str, float] = {}
 
     def close(self) -> None:
@@ -95,44 +103,86 @@ class Insight:
             )
             return Insights(analysis, share)
 
-    async def invert(self, rig: Rig, request: InverseRequest) -> Inverse:
+    async def invert(self, rig: Rig, request: InverseRequest, *, wait: float) -> Inverse:
         """Return the controls that bring landmarks nearest to their targets.
 
+        Where nobody has asked that of the rig before, how it answers each muscle is worked out
+        beside the live faces first.
+
+        Args:
+            rig: Whose face.
+            request: What is asked; it is checked before anything is waited for.
+            wait: Seconds to wait for how the rig answers each muscle.
+
         Raises:
-            Busy: If too much is asked for at once.
+            Busy: If too much is asked for at once, or that is not known by then.
             Refused: If a name or a number of it cannot be used.
         """
         async with self._place():
-            loop = asyncio.get_running_loop()
             try:
-                return await loop.run_in_executor(
-                    self._pool, lambda: inverse_of(rig, request, threads=1, progress=self._go_on)
+                question = question_of(rig, request.targets, **_settings_of(request))
+                response = await self._response(rig, wait)
+                return await asyncio.get_running_loop().run_in_executor(
+                    self._pool,
+                    lambda: search_for(rig, question, response, threads=1, progress=self._go_on),
                 )
             except EngineError as error:
                 raise refused_by_engine(error) from error
+
+    async def _response(self, rig: Rig, wait: float) -> Response:
+        """Return how a rig answers each muscle.
+
+        Raises:
+            Busy: If it is not known by then.
+        """
+        begun = self._by_then(
+            self._responses,
+            f"response {rig.id}",
+            lambda go_on: response_of(rig, threads=_THREADS, progress=go_on),
+            wait,
+        )
+        response, share = await begun
+        if response is None:
+            message = (
+                "how this rig answers each of its muscles is being worked out, once for each rig, "
+                f"and {share or 0.0:.0%} of it is done; ask again, or with ?wait=60"
+            )
+            raise Busy("rig_being_measured", message, retry_after=_RETRY_SECONDS)
+        return response
 
     async def _basis(
         self, rig: Rig, model: Model, wait: float
     ) -> tuple[UnitBasis | None, float | None]:
         """Return the fields of a rig's units, or the share of them that is done by then."""
-        key = f"{rig.id} {model}"
-        task = self._bases.begin(key, lambda: self._made(key, rig, model))
+        key = f"units {rig.id} {model}"
+        return await self._by_then(
+            self._bases,
+            key,
+            lambda go_on: unit_basis(rig, model, threads=_THREADS, progress=go_on),
+            wait,
+        )
+
+    async def _by_then(
+        self, shelf: Shelf[Result], key: str, make: Callable[[Progress], Result], wait: float
+    ) -> tuple[Result | None, float | None]:
+        """Return what is worked out once for each rig, or the share of it that is done by then."""
+        task = shelf.begin(key, lambda: self._made(key, make))
         await asyncio.wait({task}, timeout=wait)
         if task.done() and not task.cancelled():
             return task.result(), None
         return None, self._shares.get(key, 0.0)
 
-    def _made(self, key: str, rig: Rig, model: Model) -> UnitBasis:
+    def _made(self, key: str, make: Callable[[Progress], Result]) -> Result:
         def go_on(share: float) -> None:
             self._shares[key] = share
             self._go_on(share)
 
         try:
-            return unit_basis(rig, model, threads=_THREADS, progress=go_on)
+            return make(go_on)
         except EngineError:
             raise
         except Exception:
-            _LOG.exception("the units of a rig could not be measured", rig=rig.id)
+            _LOG.exception("a rig could not be measured", what=key)
             raise
         finally:
             self._shares.pop(key, None)
@@ -163,7 +213,6 @@ def inverse_of(
     rig: Rig,
     request: InverseRequest,
     *,
-    threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Inverse:
     """Return the engine's answer to a request.
@@ -171,18 +220,19 @@ def inverse_of(
     Raises:
         EngineError: If a name or a number of it cannot be used.
     """
-    return invert(
-        rig,
-        request.targets,
-        weights=request.weights,
-        muscles=request.muscles,
-        units=request.action_units,
-        jaw=request.jaw,
-        regularization=request.regularization,
-        iterations=request.iterations,
-        threads=threads,
-        progress=progress,
-    )
+    return invert(rig, request.targets, **_settings_of(request), progress=progress)
+
+
+def _settings_of(request: InverseRequest) -> dict[str, Any]:
+    """Return what a request says besides its targets, as the engine calls it."""
+    return {
+        "weights": request.weights,
+        "muscles": request.muscles,
+        "units": request.action_units,
+        "jaw": request.jaw,
+        "regularization": request.regularization,
+        "iterations": request.iterations,
+    }
 
 
 def _requested(report: Mapping[str, Any]) -> dict[str, float]:

@@ -15,7 +15,7 @@ from ..simulator import Simulator
 from ..timeline import TICKS_PER_SECOND
 from .controls import Controls, controls_of
 from .goal import Goal, check_number, goal_of
-from .response import response_of
+from .response import Response, response_of
 from .search import Search
 
 REGULARIZATION_MM = 0.8
@@ -89,6 +89,49 @@ class Inverse:
         }
 
 
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What is asked of the inverse, checked.
+
+    Attributes:
+        goal: Where landmarks are wanted.
+        controls: What may be moved.
+        regularization: Misfit of one landmark, mm, that a full activation is worth.
+        iterations: Most Gauss-Newton steps.
+    """
+
+    goal: Goal
+    controls: Controls
+    regularization: float
+    iterations: int
+
+
+def question_of(
+    rig: Rig,
+    targets: Mapping[str, Sequence[float | None]],
+    *,
+    weights: Mapping[str, float] | None = None,
+    muscles: Sequence[str] | None = None,
+    units: Sequence[str] | None = None,
+    jaw: bool = True,
+    regularization: float | None = None,
+    iterations: int = 12,
+) -> Question:
+    """Return what is asked, checked before anything is simulated; see `invert`.
+
+    Raises:
+        UnknownName: For a landmark, muscle or unit that the rig does not have.
+        InvalidValue: For targets, weights or settings that cannot be used.
+    """
+    goal = goal_of(rig, targets, weights or {})
+    controls = controls_of(rig, muscles, units, jaw=jaw)
+    if regularization is None:
+        regularization = REGULARIZATION_MM / math.sqrt(len(targets))
+    check_number("regularization", regularization, 0.0, 100.0)
+    check_number("iterations", iterations, 1, MOST_ITERATIONS)
+    return Question(goal, controls, regularization, iterations)
+
+
 def invert(
     rig: Rig,
     targets: Mapping[str, Sequence[float | None]],
@@ -124,21 +167,55 @@ def invert(
         UnknownName: For a landmark, muscle or unit that the rig does not have.
         InvalidValue: For targets, weights or settings that cannot be used.
     """
-    goal = goal_of(rig, targets, weights or {})
-    controls = controls_of(rig, muscles, units, jaw=jaw)
-    if regularization is None:
-        regularization = REGULARIZATION_MM / math.sqrt(len(targets))
-    check_number("regularization", regularization, 0.0, 100.0)
-    check_number("iterations", iterations, 1, MOST_ITERATIONS)
+    question = question_of(
+        rig,
+        targets,
+        weights=weights,
+        muscles=muscles,
+        units=units,
+        jaw=jaw,
+        regularization=regularization,
+        iterations=iterations,
+    )
     slow = progress or _tell_nobody
     response = response_of(rig, model, threads=threads, progress=lambda share: slow(0.5 * share))
+    return search_for(
+        rig,
+        question,
+        response,
+        model=model,
+        threads=threads,
+        progress=lambda share: slow(0.5 + 0.5 * share),
+    )
+
+
+def search_for(
+    rig: Rig,
+    question: Question,
+    response: Response,
+    *,
+    model: Model | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Inverse:
+    """Return the answer to a question, from how the rig's surface answers each muscle.
+
+    Args:
+        rig: Whose face.
+        question: From `question_of`.
+        response: From `response_of`, of the same rig and model.
+        model: Forms of the physics; the rig's own if None.
+        threads: Faces stepped at a time; None takes one a core.
+        progress: Told the share of the search done, 0 to 1; may raise to stop it.
+    """
+    slow = progress or _tell_nobody
     simulator = Simulator(rig, model=model, threads=threads)
-    search = Search(goal, controls, response, regularization, simulator)
-    for step in range(iterations):
-        slow(0.5 + 0.5 * step / iterations)
+    search = Search(question.goal, question.controls, response, question.regularization, simulator)
+    for step in range(question.iterations):
+        slow(step / question.iterations)
         if search.advance():
             break
-    return _answer(rig, goal, controls, search)
+    return _answer(rig, question.goal, question.controls, search)
 
 
 def _answer(rig: Rig, goal: Goal, controls: Controls, search: Search) -> Inverse:

@@ -23,6 +23,17 @@ Wait = Annotated[
     ),
 ]
 
+InverseWait = Annotated[
+    float,
+    Query(
+        ge=0,
+        le=60,
+        allow_inf_nan=False,
+        description="Seconds to wait for how this rig answers each muscle, if nobody has asked for "
+        "that before; 503 if it is not known by then.",
+    ),
+]
+
 
 @router.get("/sessions/{session_id}/analysis", response_model_exclude_unset=True)
 async def session_analysis(
@@ -47,8 +58,10 @@ async def session_analysis(
 
 
 @router.post("/rigs/{rig}/inverse")
-async def rig_inverse(rig: str, body: InverseRequest, parts: Parts) -> InverseBody:
+async def rig_inverse(
+    rig: str, body: InverseRequest, parts: Parts, wait: InverseWait = 60.0
+) -> InverseBody:
     """Return the muscles, or action units, and the jaw that bring landmarks to their targets."""
     found = await parts.rigs.get(rig)
-    inverse = await parts.insight.invert(found, body)
+    inverse = await parts.insight.invert(found, body, wait=wait)
     return InverseBody.model_validate(inverse.to_json())

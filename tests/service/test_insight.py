@@ -152,9 +152,21 @@ def test_the_command_line_refuses_in_one_sentence(arguments: tuple[str, ...]) ->
     assert "cannot be analysed" in " ".join(result.output.split())
 
 
+def inverse(client: TestClient, body: dict[str, Any]) -> Any:
+    """Return the answer to targets once the standard rig's response is known."""
+    answers: list[Any] = []
+
+    def done() -> bool:
+        answers.append(client.post("/api/rigs/standard/inverse", json=body))
+        return answers[-1].status_code != 503
+
+    until(done, seconds=600)
+    return answers[-1]
+
+
 def test_the_inverse_answers_what_a_session_can_play(client: TestClient, session: str) -> None:
     targets = {"M1_5.L": [3.0, 6.0, -3.0], "48": [None, 6.0, None]}
-    answer = client.post("/api/rigs/standard/inverse", json={"targets": targets})
+    answer = inverse(client, {"targets": targets})
     assert answer.status_code == 200, answer.text
     body = answer.json()
     assert body["rms_mm"] < 1.0
@@ -163,9 +175,43 @@ def test_the_inverse_answers_what_a_session_can_play(client: TestClient, session
     assert client.put(f"/api/sessions/{session}/controls", json=controls).status_code == 200
 
 
+def test_the_first_inverse_of_a_rig_says_how_far_it_is(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gate, begun = threading.Event(), threading.Event()
+
+    def slow(_rig: object, *, progress: Any, **_: Any) -> None:
+        progress(0.25)
+        begun.set()
+        gate.wait(60.0)
+        raise Cancelled("enough of this")
+
+    made = client.post("/api/rigs", json={"tissue": {"fat_pressure": 1.17}})
+    address = f"/api/rigs/{made.json()['id']}/inverse?wait=0"
+    body = {"targets": {"M1_5.L": [3.0, 6.0, -3.0]}}
+    with monkeypatch.context() as patched:
+        patched.setattr(service.insight, "response_of", slow)
+        try:
+            first = client.post(address, json=body, headers={"Idempotency-Key": "inverse"})
+            assert begun.wait(60.0)
+            second = client.post(address, json=body)
+            wrong = client.post(address, json={"targets": {"M1_55.L": [0, 0, 0]}})
+        finally:
+            gate.set()
+    assert first.status_code == second.status_code == 503
+    assert second.json()["error"] == "rig_being_measured"
+    assert "25% of it is done; ask again" in second.json()["message"]
+    assert second.headers["Retry-After"]
+    assert wrong.status_code == 422
+
+    until(lambda: client.post(address, json=body).status_code == 200, seconds=600)
+    again = client.post(address, json=body, headers={"Idempotency-Key": "inverse"})
+    assert again.status_code == 200, again.text
+
+
 def test_the_inverse_may_search_units(client: TestClient) -> None:
     body = {"targets": {"48": [-4.0, 8.0, -4.0]}, "action_units": ["R12", "AU6"], "jaw": False}
-    answer = client.post("/api/rigs/standard/inverse", json=body)
+    answer = inverse(client, body)
     assert answer.status_code == 200, answer.text
     assert answer.json()["action_units"]["R12"] > 0.5
 
