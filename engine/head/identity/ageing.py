@@ -46,6 +46,7 @@ _PER_FULL_AGE: Mapping[str, float] = {
     "eye_depth": 1.2,
     "nasolabial": 3.8,
     "marionette": 2.3,
+    "mouth_corners": -0.9,
     "jowl": 5.0,
     "prejowl": 2.4,
     "submental": 3.4,
@@ -69,7 +70,7 @@ _FEMALE_PER_FULL_AGE: Mapping[str, float] = {
     "marionette": -0.8,
     "neck_bands": -0.5,
     "chin_projection": -0.5,
-    "mouth_corners": 0.9,
+    "mouth_corners": 0.3,
 }
 """What is otherwise in a woman's ageing: bone changes less about the brow, fat stays longer."""
 
@@ -103,7 +104,7 @@ _FEMALE: Mapping[str, float] = {
     "mid_cheek": 0.9,
     "cheek": -0.3,
     "cupid": 0.9,
-    "mouth_corners": 1.0,
+    "mouth_corners": 0.4,
     "chin_projection": -0.8,
     "chin_width": -2.8,
     "jaw_angle": -2.8,

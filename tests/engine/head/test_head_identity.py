@@ -97,3 +97,24 @@ def test_lips_still_meet(head: Head, name: str) -> None:
         gap = np.linalg.norm(np.subtract(*person.points[ends]))
         before = np.linalg.norm(np.subtract(*head.points[ends]))
         assert abs(gap - before) < 0.25
+
+
+def corner_over_the_seam(person: Head) -> float:
+    """Return how high the left corner of the mouth stands over the middle of its line, mm."""
+    seam = person.points[[person.point("M0_0"), person.point("M0_10")]].mean(axis=0)
+    return float((person.landmark_places["ch.L"] - seam)[1])
+
+
+def test_a_mouth_at_rest_neither_frowns_nor_smiles(head: Head) -> None:
+    """A corner 1 mm below the line's middle reads as sadness, 1 mm above it as a smile."""
+    assert abs(corner_over_the_seam(head)) < 0.4
+    for name in people():
+        assert -0.8 < corner_over_the_seam(made(name)) < 1.1, name
+
+
+def test_corners_of_the_mouth_fall_with_age() -> None:
+    young, old = (
+        person_from(reference_head("high"), replace(RECIPES["woman"], age=age))
+        for age in (25.0, 85.0)
+    )
+    assert corner_over_the_seam(old) < corner_over_the_seam(young) - 0.3
