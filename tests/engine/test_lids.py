@@ -7,7 +7,7 @@ import pytest
 
 from engine import Keyframe, Simulator
 from engine.lids import GRID, MEETING, lids_meeting, lids_with_skin
-from engine.measure import CHEEK, LOWER_LID, UPPER_LID, Face, settle
+from engine.measure import CHEEK, INNER_BROW, LOWER_LID, OUTER_BROW, UPPER_LID, Face, settle
 from engine.skull import turn_lids
 from engine.tissue.contact import lids_of
 
@@ -93,3 +93,11 @@ def test_a_face_with_pushed_lids_falls_asleep(standard_rig):
     for _ in range(240):
         simulator.step()
     assert simulator.frame("face").asleep
+
+
+@pytest.mark.parametrize("unit", ["AU42", "AU43", "AU45"])
+def test_closing_the_eyes_leaves_the_brows_where_they_are(standard_rig, unit):
+    """A shut lid unfolds; the brow over it stays."""
+    shut = settle(standard_rig, [Keyframe(action_units={unit: 1.0})])[0]
+    for brow in (INNER_BROW, "E4_4.L", OUTER_BROW):
+        assert abs(shut.u(brow)[1]) < 1.0, brow
