@@ -6,6 +6,7 @@ import pytest
 
 from engine import InvalidValue, Keyframe
 from engine.combination import Combination, together
+from engine.flesh import examine
 from engine.measure import (
     CHEEK,
     CORNER,
@@ -190,3 +191,12 @@ def test_stretched_lips_part(looks):
     assert gap(looks["20+25"]) > gap(looks["20"]) + 3.0
     assert up(looks["12+25"], CORNER) > 5.0
     assert up(looks["12+26"], CORNER) > 2.0 > up(looks["26"], CORNER) + 4.0
+
+
+def test_a_laugh_keeps_its_corners_up_and_its_flesh_whole(standard_rig):
+    """Jaw open, the corners stand above where they rest, and no element of the lips turns over."""
+    smiles = [Keyframe(action_units={"AU12": k, "AU26": 1.0}) for k in (0.4, 0.6, 0.8, 1.0)]
+    heights = [float(face.u(CORNER)[1]) for face in settle(standard_rig, smiles)]
+    assert heights == sorted(heights)
+    assert heights[-1] > 5.0
+    assert [flesh.inverted for flesh in examine(standard_rig, smiles)] == [0] * len(smiles)
