@@ -220,10 +220,29 @@ class Pull(NamedTuple):
     share: FloatArray
 
 
+class Scratch(NamedTuple):
+    """Where the force loops keep what one of them hands to the next.
+
+    Attributes:
+        tension: Of each spring, shape (3, springs).
+        terms: Of each element, shape (9, elements).
+    """
+
+    tension: FloatArray
+    terms: FloatArray
+
+
+def scratch_for(tissue: Tissue) -> Scratch:
+    """Return scratch arrays for the forces of `tissue`."""
+    return Scratch(
+        np.zeros((3, len(tissue.springs.first))), np.zeros((9, len(tissue.prisms.corners)))
+    )
+
+
 class Workspace(NamedTuple):
     """Scratch arrays of one thread, so that no step allocates."""
 
-    tension: FloatArray
+    scratch: Scratch
     force: FloatArray
     x: FloatArray
     v: FloatArray
@@ -231,10 +250,10 @@ class Workspace(NamedTuple):
     slope_v: FloatArray
 
 
-def workspace(node_count: int, spring_count: int) -> Workspace:
-    """Return scratch arrays for a face of `node_count` nodes and `spring_count` springs."""
-    shape = (3, node_count)
-    return Workspace(np.zeros((3, spring_count)), *(np.zeros(shape) for _ in range(5)))
+def workspace(tissue: Tissue) -> Workspace:
+    """Return scratch arrays for a face of `tissue`."""
+    shape = tissue.rest.shape
+    return Workspace(scratch_for(tissue), *(np.zeros(shape) for _ in range(5)))
 
 
 @kernel
@@ -243,18 +262,21 @@ def add_spring_forces(
 ) -> None:
     """Add Σ_j k (|d| - d0) d/|d| at each node (Eqs. 19-20) to `force`.
 
-    First every spring's tension, then both of its ends, spring by spring: the first loop is vector
-    code, and the second has one order, so the bits do not depend on anything else that runs.
+    First every spring's d, then its tension, then both of its ends, spring by spring. Apart, the
+    loop in the middle is vector code; the last has one order, so the bits do not depend on
+    anything else that runs. Indices are cast because a signed one might count from the end.
     """
     first, second = springs.first, springs.second
     rest, low, high, guard = springs.rest, springs.low, springs.high, springs.guard
     threshold, guard_strain = springs.threshold, springs.guard_strain
-    x0, x1, x2 = x[0], x[1], x[2]
+    for c in range(3):
+        row, out = x[c], tension[c]
+        for s in range(first.shape[0]):
+            out[s] = row[np.uint32(second[s])] - row[np.uint32(first[s])]
     t0, t1, t2 = tension[0], tension[1], tension[2]
     if springs.literal:
         for s in range(first.shape[0]):
-            i, j = first[s], second[s]
-            dx, dy, dz = x0[j] - x0[i], x1[j] - x1[i], x2[j] - x2[i]
+            dx, dy, dz = t0[s], t1[s], t2[s]
             length = math.sqrt(dx * dx + dy * dy + dz * dz)
             stretch = length - rest[s]
             stiffness = low[s] if stretch <= threshold * rest[s] else high[s]  # Eq. 20
@@ -263,8 +285,7 @@ def add_spring_forces(
             t0[s], t1[s], t2[s] = pull * dx, pull * dy, pull * dz
     else:
         for s in range(first.shape[0]):
-            i, j = first[s], second[s]
-            dx, dy, dz = x0[j] - x0[i], x1[j] - x1[i], x2[j] - x2[i]
+            dx, dy, dz = t0[s], t1[s], t2[s]
             length = math.sqrt(dx * dx + dy * dy + dz * dz)
             stretch = length - rest[s]
             pull = (
@@ -272,12 +293,10 @@ def add_spring_forces(
                 + (high[s] - low[s]) * max(stretch - threshold * rest[s], 0.0)
                 + guard[s] * min(stretch + guard_strain * rest[s], 0.0)
             ) / length
-            t0[s] = pull * dx
-            t1[s] = pull * dy
-            t2[s] = pull * dz
+            t0[s], t1[s], t2[s] = pull * dx, pull * dy, pull * dz
     f0, f1, f2 = force[0], force[1], force[2]
     for s in range(first.shape[0]):
-        i, j = first[s], second[s]
+        i, j = np.uint32(first[s]), np.uint32(second[s])
         f0[i] += t0[s]
         f1[i] += t1[s]
         f2[i] += t2[s]
@@ -332,69 +351,73 @@ def volume_gradients(nodes: FloatArray, corners: IndexArray) -> FloatArray:
 
 
 @kernel
-def add_prism_forces(x: FloatArray, prisms: Prisms, force: FloatArray) -> None:
+def add_prism_forces(x: FloatArray, prisms: Prisms, terms: FloatArray, force: FloatArray) -> None:
     """Keep the volume of each element between two layers, and the order of the layers.
 
-    V = A·h with A = ½ e1 x e2 of the triangle half way between the layers and h the mean of the
+    V = A·h with A = ½ p x r of the triangle half way between the layers and h the mean of the
     three columns; the force is minus the gradient of ½ k (V/V0 - 1)², steeper where an element
     is nearly flat and level beyond `LEAST_VOLUME` and `MOST_VOLUME`. An element cannot be inverted
     without passing V = 0.
+
+    In three loops for the same reason as the springs. `terms`, shape (9, elements), takes p, r and
+    h, then the force of the second and of the third corner that turns the middle triangle, and the
+    force along its normal.
     """
-    corners = prisms.corners
-    n = x.shape[1] // 3
-    for e in range(corners.shape[0]):
-        a, b, c = corners[e, 0], corners[e, 1], corners[e, 2]
-        d, f, g = a + n, b + n, c + n
-        ax, ay, az = x[0, a] + x[0, d], x[1, a] + x[1, d], x[2, a] + x[2, d]
-        px = 0.5 * (x[0, b] + x[0, f] - ax)
-        py = 0.5 * (x[1, b] + x[1, f] - ay)
-        pz = 0.5 * (x[2, b] + x[2, f] - az)
-        rx = 0.5 * (x[0, c] + x[0, g] - ax)
-        ry = 0.5 * (x[1, c] + x[1, g] - ay)
-        rz = 0.5 * (x[2, c] + x[2, g] - az)
-        hx = (x[0, a] + x[0, b] + x[0, c] - x[0, d] - x[0, f] - x[0, g]) / 3.0
-        hy = (x[1, a] + x[1, b] + x[1, c] - x[1, d] - x[1, f] - x[1, g]) / 3.0
-        hz = (x[2, a] + x[2, b] + x[2, c] - x[2, d] - x[2, f] - x[2, g]) / 3.0
-        nx = 0.5 * (py * rz - pz * ry)
-        ny = 0.5 * (pz * rx - px * rz)
-        nz = 0.5 * (px * ry - py * rx)
-        share = (nx * hx + ny * hy + nz * hz) / prisms.volume[e]
+    first, second, third = prisms.corners[:, 0], prisms.corners[:, 1], prisms.corners[:, 2]
+    n, count = np.uint32(x.shape[1] // 3), first.shape[0]
+    for k in range(3):
+        row, p, r, h = x[k], terms[k], terms[3 + k], terms[6 + k]
+        for e in range(count):
+            a, b, c = np.uint32(first[e]), np.uint32(second[e]), np.uint32(third[e])
+            up_a, up_b, up_c = row[a], row[b], row[c]
+            low_a, low_b, low_c = row[a + n], row[b + n], row[c + n]
+            p[e] = 0.5 * (up_b + low_b - up_a - low_a)
+            r[e] = 0.5 * (up_c + low_c - up_a - low_a)
+            h[e] = (up_a + up_b + up_c - low_a - low_b - low_c) / 3.0
+    _prism_terms(prisms, terms)
+    for k in range(3):
+        out, by_b, by_c, rise = force[k], terms[k], terms[3 + k], terms[6 + k]
+        for e in range(count):
+            a, b, c = np.uint32(first[e]), np.uint32(second[e]), np.uint32(third[e])
+            out[a] += rise[e] - by_b[e] - by_c[e]
+            out[b] += rise[e] + by_b[e]
+            out[c] += rise[e] + by_c[e]
+            out[a + n] -= rise[e] + by_b[e] + by_c[e]
+            out[b + n] += by_b[e] - rise[e]
+            out[c + n] += by_c[e] - rise[e]
+
+
+@kernel
+def _prism_terms(prisms: Prisms, terms: FloatArray) -> None:
+    """Turn p, r and h of each element into its forces, in place; see `add_prism_forces`."""
+    px, py, pz = terms[0], terms[1], terms[2]
+    rx, ry, rz = terms[3], terms[4], terms[5]
+    hx, hy, hz = terms[6], terms[7], terms[8]
+    volume, stiffness, order, least = prisms.volume, prisms.stiffness, prisms.order, prisms.least
+    for e in range(volume.shape[0]):
+        p0, p1, p2 = px[e], py[e], pz[e]
+        r0, r1, r2 = rx[e], ry[e], rz[e]
+        h0, h1, h2 = hx[e], hy[e], hz[e]
+        n0 = 0.5 * (p1 * r2 - p2 * r1)
+        n1 = 0.5 * (p2 * r0 - p0 * r2)
+        n2 = 0.5 * (p0 * r1 - p1 * r0)
+        share = (n0 * h0 + n1 * h1 + n2 * h2) / volume[e]
         share = min(max(share, LEAST_VOLUME), MOST_VOLUME)
-        push = (
-            -prisms.stiffness[e]
-            / prisms.volume[e]
-            * ((share - 1.0) - prisms.order[e] * min(share - prisms.least, 0.0) ** 2)
+        pressed = min(share - least, 0.0)
+        push = -stiffness[e] / volume[e] * ((share - 1.0) - order[e] * pressed * pressed)
+        # Quarters: A's half, and each corner of the middle triangle is the mean of two nodes.
+        turn, rise = 0.25 * push, push / 3.0
+        px[e], py[e], pz[e] = (
+            turn * (r1 * h2 - r2 * h1),
+            turn * (r2 * h0 - r0 * h2),
+            turn * (r0 * h1 - r1 * h0),
         )
-        # Halves: each corner of the middle triangle is the mean of two nodes.
-        bx, by, bz = (
-            0.25 * push * (ry * hz - rz * hy),
-            0.25 * push * (rz * hx - rx * hz),
-            0.25 * push * (rx * hy - ry * hx),
+        rx[e], ry[e], rz[e] = (
+            turn * (h1 * p2 - h2 * p1),
+            turn * (h2 * p0 - h0 * p2),
+            turn * (h0 * p1 - h1 * p0),
         )
-        cx, cy, cz = (
-            0.25 * push * (hy * pz - hz * py),
-            0.25 * push * (hz * px - hx * pz),
-            0.25 * push * (hx * py - hy * px),
-        )
-        ux, uy, uz = push * nx / 3.0, push * ny / 3.0, push * nz / 3.0
-        force[0, a] += ux - bx - cx
-        force[1, a] += uy - by - cy
-        force[2, a] += uz - bz - cz
-        force[0, d] -= ux + bx + cx
-        force[1, d] -= uy + by + cy
-        force[2, d] -= uz + bz + cz
-        force[0, b] += ux + bx
-        force[1, b] += uy + by
-        force[2, b] += uz + bz
-        force[0, f] += bx - ux
-        force[1, f] += by - uy
-        force[2, f] += bz - uz
-        force[0, c] += ux + cx
-        force[1, c] += uy + cy
-        force[2, c] += uz + cz
-        force[0, g] += cx - ux
-        force[1, g] += cy - uy
-        force[2, g] += cz - uz
+        hx[e], hy[e], hz[e] = rise * n0, rise * n1, rise * n2
 
 
 @kernel
@@ -585,16 +608,16 @@ def add_basis_forces(
 
 @kernel
 def static_forces(
-    x: FloatArray, tissue: Tissue, skull: Skull, pull: Pull, tension: FloatArray, force: FloatArray
+    x: FloatArray, tissue: Tissue, skull: Skull, pull: Pull, scratch: Scratch, force: FloatArray
 ) -> None:
     """Set `force` to f - Q of Eq. 21: everything that acts on the nodes but damping."""
     force[:] = skull.load
-    add_spring_forces(x, tissue.springs, tension, force)
+    add_spring_forces(x, tissue.springs, scratch.tension, force)
     add_anchor_forces(x, tissue.anchors, skull.targets, skull.normals, force)
     if tissue.prisms.corners.shape[0] > 0:
-        add_prism_forces(x, tissue.prisms, force)
+        add_prism_forces(x, tissue.prisms, scratch.terms, force)
     if tissue.plate.values.shape[0] > 0:
-        add_plate_forces(x, tissue.rest, tissue.plate, tension, force)
+        add_plate_forces(x, tissue.rest, tissue.plate, scratch.tension, force)
     if tissue.pressure.quads.shape[0] > 0:
         add_pressure_forces(x, skull.bone, tissue.pressure, force)
     if pull.kinds.shape[0] > 0:
@@ -608,11 +631,11 @@ def accelerations(
     tissue: Tissue,
     skull: Skull,
     pull: Pull,
-    tension: FloatArray,
+    scratch: Scratch,
     out: FloatArray,
 ) -> None:
     """Set `out` to ẍ = M⁻¹ (f - Q) - c ẋ (Eqs. 21-22); fixed nodes have inverse mass 0."""
-    static_forces(x, tissue, skull, pull, tension, out)
+    static_forces(x, tissue, skull, pull, scratch, out)
     damping = tissue.damping
     for c in range(3):
         for i in range(x.shape[1]):
@@ -744,7 +767,7 @@ def advance(
         work.slope_x[:] = 0.0
         work.slope_v[:] = 0.0
         for stage in range(max(stages, 1)):
-            accelerations(work.x, work.v, tissue, skull, pull, work.tension, work.force)
+            accelerations(work.x, work.v, tissue, skull, pull, work.scratch, work.force)
             if stages > 0:
                 ahead, share = tableau[stage, 0] * dt, tableau[stage, 1] * dt
                 runge_kutta_stage(x, v, ahead, share, work)

@@ -238,8 +238,7 @@ class Simulator:
         skull, pull = self._forces(state)
         assembly = self.assembly
         if state.work is None:
-            arrays = assembly.tissue.arrays
-            state.work = workspace(arrays.rest.shape[1], len(arrays.springs.first))
+            state.work = workspace(assembly.tissue.arrays)
         advance(
             state.x,
             state.v,

@@ -17,6 +17,7 @@ from ..dynamics import (
     Skull,
     Springs,
     Tissue,
+    scratch_for,
     static_forces,
     volume_gradients,
 )
@@ -255,9 +256,7 @@ def _dead_load(arrays: Tissue, layers: Layers) -> FloatArray:
     force = np.zeros_like(arrays.rest)
     n = len(layers.normals)
     skull = rest_skull(arrays, layers, np.zeros_like(arrays.rest))
-    static_forces(
-        arrays.rest, arrays, skull, no_pull(n), np.zeros((3, len(arrays.springs.first))), force
-    )
+    static_forces(arrays.rest, arrays, skull, no_pull(n), scratch_for(arrays), force)
     return -force
 
 
@@ -302,7 +301,7 @@ def _prisms(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Pr
     # Of a lid's plate all corners are moved: it cannot lose volume.
     keep = np.tile(~_held(head)[upper].all(axis=1), 2) & (volume > 0.0) & (p.skin_volume > 0.0)
     return Prisms(
-        corners[keep].astype(np.int32),
+        np.asfortranarray(corners[keep].astype(np.int32)),
         (p.skin_volume * firm * size / area0 * thickness**2)[keep],
         volume[keep],
         (p.layer_order * stubborn / firm)[keep],

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import FloatArray
-from engine.dynamics import Pull, Skull, advance, static_forces, workspace
+from engine.dynamics import Pull, Skull, advance, scratch_for, static_forces, workspace
 from engine.head import Head, head_from_mesh
 from engine.tissue import TissueModel, TissueParameters, assemble, no_pull, rest_skull
 
@@ -42,8 +42,8 @@ class SmallTissue:
     def forces(self, x: FloatArray) -> FloatArray:
         """Return all static forces, shape (3, nodes)."""
         out = np.zeros_like(x)
-        tension = np.zeros((3, len(self.model.arrays.springs.first)))
-        static_forces(x, self.model.arrays, self.skull, self.pull, tension, out)
+        arrays = self.model.arrays
+        static_forces(x, arrays, self.skull, self.pull, scratch_for(arrays), out)
         return out
 
     def loaded(self, load: FloatArray) -> SmallTissue:
@@ -55,7 +55,7 @@ class SmallTissue:
     ) -> tuple[FloatArray, FloatArray]:
         """Return positions and velocities after `steps` of `dt` seconds."""
         x, v = x.copy(), v.copy()
-        work = workspace(x.shape[1], len(self.model.arrays.springs.first))
+        work = workspace(self.model.arrays)
         advance(x, v, steps, dt, tableau, self.model.arrays, self.skull, self.pull, work)
         return x, v
 

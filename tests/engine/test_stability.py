@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine import Keyframe, Model, Rig, Simulator
-from engine.dynamics import static_forces
+from engine.dynamics import scratch_for, static_forces
 from engine.rig import MODEL_CHOICES
 from engine.simulator import FaceState
 from engine.stability import SAFETY, largest_frequency, longest_step
@@ -82,14 +82,14 @@ def fastest_mode(simulator: Simulator, state: FaceState) -> float:
     skull, pull = simulator._forces(state)
     root = np.sqrt(tissue.inverse_mass)
     mode = np.sin(1.0 + np.arange(state.x.size)).reshape(state.x.shape) * (root > 0.0)
-    tension = np.zeros((3, len(tissue.springs.first)))
+    scratch = scratch_for(tissue)
     ahead, back = np.zeros_like(mode), np.zeros_like(mode)
     for _ in range(30):
         mode /= np.linalg.norm(mode)
         way = mode * root
         step = 1.0e-4 / np.abs(way).max()
-        static_forces(state.x + step * way, tissue, skull, pull, tension, ahead)
-        static_forces(state.x - step * way, tissue, skull, pull, tension, back)
+        static_forces(state.x + step * way, tissue, skull, pull, scratch, ahead)
+        static_forces(state.x - step * way, tissue, skull, pull, scratch, back)
         mode = (back - ahead) * root / (2.0 * step)
     return math.sqrt(float(np.linalg.norm(mode)))
 
