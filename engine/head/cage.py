@@ -10,7 +10,7 @@ from importlib import resources
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from .patches import (
     HalfCage,
     add_cheek,
@@ -38,6 +38,7 @@ class Cage:
         faces: Counter-clockwise from outside, -1 in the last column of a triangle, shape (f, 4).
         regions: Region of each face, length f.
         mirror: Mirror image of each point, shape (v,).
+        fine: Which faces have been cut from larger ones, shape (f,), none if None.
     """
 
     names: tuple[str, ...]
@@ -45,6 +46,7 @@ class Cage:
     faces: IntArray
     regions: tuple[str, ...]
     mirror: IntArray
+    fine: BoolArray | None = None
 
     @cached_property
     def left(self) -> dict[str, int]:

@@ -14,10 +14,14 @@ COARSE_REGIONS = ("scalp", "neck", "mouth_inner", "submental", "ear")
 
 
 def drawn_fine(cage: Cage) -> BoolArray:
-    """Return which of the cage's faces are drawn fine, shape (f,): the face's and the ear's rim."""
+    """Return which of the cage's faces are drawn fine, shape (f,): the face's and the ear's rim.
+
+    Faces that the cage itself has finer than elsewhere need no more.
+    """
     on_rim = np.isin(np.array(cage.names), rim_points())
     of_rim = (on_rim[cage.faces] | (cage.faces < 0)).all(axis=1)
-    return np.asarray(~np.isin(np.array(cage.regions), COARSE_REGIONS) | of_rim)
+    fine = ~np.isin(np.array(cage.regions), COARSE_REGIONS) | of_rim
+    return np.asarray(fine if cage.fine is None else fine & ~cage.fine)
 
 
 def graded_triangles(

@@ -14,6 +14,7 @@ from ..cache import cached_arrays
 from ..errors import UnknownName
 from .cage import Cage, build_cage
 from .fairing import faired_points
+from .finer import finer
 from .groom import groomed
 from .head import DrawnSurface, Eye, Head, Part
 from .identity import moved_arrays, person_from, with_moved
@@ -112,11 +113,15 @@ def paper_head() -> Head:
     return _cached("paper", _paper)
 
 
-def sculpt() -> Sculpture:
-    """Return the built-in head's cage, surface, colours and eyes."""
+def sculpt(*, fine: bool = True) -> Sculpture:
+    """Return the built-in head's cage, surface, colours and eyes; `fine` where creases form."""
     cage = build_cage()
     points = faired_points(cage)
     limit = limit_surface(cage_level(*_creased(cage)))
+    if fine:
+        cage = finer(cage, points, limit)
+        points = cage.points
+        limit = limit_surface(cage_level(*_creased(cage)))
     left = Eye(EYE_CENTER.copy(), EYE_RADIUS)
     right = Eye(EYE_CENTER * [-1.0, 1.0, 1.0], EYE_RADIUS)
     finest = limit.positions(points, 2)
@@ -147,7 +152,7 @@ def _unwrapped(sculpture: Sculpture) -> Unwrap:
 
 
 def _paper() -> Head:
-    sculpture = sculpt()
+    sculpture = sculpt(fine=False)
     cage = sculpture.cage
     quads = tissue_surface(cage, sculpture.points, _mask(cage))
     tissue = _in_triangles(quads, sculpture.points[quads.cage_points])

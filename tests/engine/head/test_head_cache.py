@@ -75,7 +75,7 @@ def test_unwritable_cache_costs_only_time(tmp_path: Path, monkeypatch: pytest.Mo
     occupied.write_text("in the way")
     monkeypatch.setenv("RISORIUS_CACHE_DIR", str(occupied))
     standard_module.reference_head.cache_clear()
-    assert standard_head("low").sheet_count == 714
+    assert standard_head("low").sheet_count == 786
 
 
 def test_key_depends_on_the_name() -> None:

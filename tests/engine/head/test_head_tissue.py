@@ -19,10 +19,10 @@ def rows(head: Head) -> np.ndarray:
 
 
 def test_standard_sheet(head: Head) -> None:
-    assert head.sheet_count == 714
-    assert (head.polygons[:, 3] >= 0).sum() == 644
-    assert (head.polygons[:, 3] < 0).sum() == 2
-    assert head.points.shape == (838, 3)
+    assert head.sheet_count == 786
+    assert (head.polygons[:, 3] >= 0).sum() == 698
+    assert (head.polygons[:, 3] < 0).sum() == 38
+    assert head.points.shape == (910, 3)
     assert len(head.polygon_regions) == len(head.polygons)
 
 
