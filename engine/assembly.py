@@ -7,12 +7,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from .arrays import BoolArray, FloatArray
+from .arrays import FloatArray
 from .channels import GROUPS
 from .dynamics import TABLEAUS, Pull
 from .errors import InvalidValue
 from .force_basis import jaw_rides, moving_pull, rest_basis
-from .muscle import AirPressure, LidMuscle
+from .muscle import LidMuscle
 from .rig import Model, Rig
 from .stability import largest_frequency, least_substeps
 from .timeline import TICKS_PER_SECOND
@@ -27,14 +27,14 @@ class Assembly:
         rig: Where it comes from.
         model: The forms of the physics.
         tissue: Layers, springs, terms, contact.
-        basis: Muscle forces at activation 1 in mode "rest", shape (m, 3, n).
+        basis: Muscle forces at activation 1, shape (m, 3, n); in mode "current" only what presses
+            along the normals, air and bellies.
         pull: The muscles in mode "current"; empty in mode "rest".
         rides: Share of the jaw that each muscle's two ends turn by, shape (m, 2).
         substeps: Integration steps a tick.
         omega: Fastest mode, rad/s.
         lid_angles: Turn of upper and lower lid at activation 1 of each muscle, degrees,
             shape (m, 2, 2): muscle, side (left, right), lid (upper, lower).
-        air: Which rows of `basis` are air and not muscle, shape (m,).
         smoothing: Share of the way to its command that each channel goes in a tick, (channels,).
     """
 
@@ -48,7 +48,6 @@ class Assembly:
     omega: float
     lid_angles: FloatArray
     smoothing: FloatArray
-    air: BoolArray
 
     @property
     def tableau(self) -> FloatArray:
@@ -85,7 +84,7 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
         rig=rig,
         model=model,
         tissue=tissue,
-        basis=rest_basis(head, tissue, rig.muscles, ring=model.sphincter),
+        basis=rest_basis(head, tissue, rig.muscles, ring=model.sphincter, pressing_only=moving),
         pull=moving_pull(head, tissue, rig.muscles, ring=model.sphincter)
         if moving
         else no_pull(tissue.node_count),
@@ -94,7 +93,6 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
         omega=omega,
         lid_angles=_lid_angles(rig),
         smoothing=_smoothing(rig),
-        air=np.array([isinstance(muscle, AirPressure) for muscle in rig.muscles], dtype=bool),
     )
 
 

@@ -3,14 +3,14 @@
 Mode "rest": weights and directions are taken once, at rest, and a muscle's force is its row of a
 constant basis times its activation. Mode "current": both are recomputed as the skin moves, the
 literal reading of the paper. They differ by up to 10 mm at full AU4, so a session chooses one.
-Air presses along the rest pose's normals in both.
+Air and bellies press along the rest pose's normals in both.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +41,8 @@ QUADRATURE = 4
 PACKED = 21
 """Numbers that hold one muscle's geometry in the kernel of mode "current"."""
 
+FLIP = np.array([-1.0, 1.0, 1.0])
+"""To the other side of the face."""
 LID_EDGE = (0.35, 0.6)
 """Radius, as a share of the orbital ellipse, over which the lids end and the cheek begins."""
 
@@ -60,7 +62,12 @@ class Samples:
 
 
 def rest_basis(
-    head: Head, tissue: TissueModel, muscles: Sequence[Muscle], *, ring: str
+    head: Head,
+    tissue: TissueModel,
+    muscles: Sequence[Muscle],
+    *,
+    ring: str,
+    pressing_only: bool = False,
 ) -> FloatArray:
     """Return each muscle's force on the hypodermis at activation 1, shape (m, 3, n).
 
@@ -69,6 +76,7 @@ def rest_basis(
         tissue: Its tissue.
         muscles: In the rig's order; lid muscles give rows of zeros.
         ring: Profile of sphincters, "ring" or "literal".
+        pressing_only: Leave out what pulls, as mode "current" has it moving with the skin.
     """
     n = tissue.node_count
     basis = np.zeros((len(muscles), 3, n))
@@ -77,19 +85,28 @@ def rest_basis(
     for row, muscle in enumerate(muscles):
         if isinstance(muscle, LidMuscle):
             continue
-        if grid is not None:
-            samples, shape, area = grid
-            density = force_density(muscle, samples, ring=ring) * area[:, None]
-            force = _lump(tissue, shape, density)
-        else:
-            force = force_density(muscle, nodes, ring=ring) * tissue.scale[:, None]
-        force = _smooth(tissue, force, tissue.parameters.force_smoothing)
+        samples = nodes if grid is None else grid[0]
+        force = _on_nodes(tissue, grid, press_density(muscle, samples))
+        if not pressing_only:
+            force += _on_nodes(tissue, grid, force_density(muscle, samples, ring=ring))
         force[tissue.held] = 0.0
         gain = gain_at(muscle, nodes.points[:, 0])
         if not isinstance(muscle, AirPressure):  # Air is as strong in a weak face.
             gain = tissue.parameters.muscle_strength * gain
         basis[row] = gain * (muscle.force_scale * force.T)
     return basis
+
+
+def _on_nodes(
+    tissue: TissueModel, grid: tuple[Samples, FloatArray, FloatArray] | None, density: FloatArray
+) -> FloatArray:
+    """Return the force on each node, shape (n, 3), of a density at the grid's samples or nodes."""
+    if grid is None:
+        force = density * tissue.scale[:, None]
+    else:
+        _, shape, area = grid
+        force = _lump(tissue, shape, density * area[:, None])
+    return _smooth(tissue, force, tissue.parameters.force_smoothing)
 
 
 def whole_pull(head: Head, muscles: Sequence[Muscle]) -> FloatArray:
@@ -109,35 +126,56 @@ def whole_pull(head: Head, muscles: Sequence[Muscle]) -> FloatArray:
     for row, muscle in enumerate(muscles):
         if not isinstance(muscle, LidMuscle):
             force = force_density(muscle, samples, ring="ring")
+            if isinstance(muscle, AirPressure):
+                force = press_density(muscle, samples)
             pulls[row] = np.linalg.norm(force, axis=1) @ area
     return pulls
 
 
 def force_density(muscle: Muscle, samples: Samples, *, ring: str) -> FloatArray:
-    """Return weight times direction of `muscle` at `samples`, shape (k, 3).
+    """Return weight times direction of `muscle`'s pull at `samples`, shape (k, 3).
 
     Right muscles are evaluated as the left one on mirrored points, so that both sides agree to the
     last bit.
     """
-    right = muscle.name.endswith(".R")
-    left = mirrored(muscle) if right else muscle
-    points, normals = samples.points, samples.normals
-    flip = np.array([-1.0, 1.0, 1.0])
-    if right:
-        points, normals = points * flip, normals * flip
+    left, samples = _as_left(muscle, samples)
+    points = samples.points
     assert not isinstance(left, LidMuscle)
     if isinstance(left, AirPressure):
-        pressure = left.weights(points) * share_of(left, points, samples.jaw)
-        pressed = pressure[:, None] * normals
-        return pressed * flip if right else pressed
+        return np.zeros_like(points)
     if isinstance(left, SphincterMuscle):
         weight = left.weights(points, profile=ring)
     else:
         weight = left.weights(points)
     weight = weight * share_of(left, points, samples.jaw)
-    direction = _along_skin(left, left.directions(points), normals)
+    direction = _along_skin(left, left.directions(points), samples.normals)
     force = weight[:, None] * direction
-    return force * flip if right else force
+    return force * FLIP if left is not muscle else force
+
+
+def press_density(muscle: Muscle, samples: Samples) -> FloatArray:
+    """Return what `muscle` presses along the normals at `samples`, shape (k, 3).
+
+    Air does nothing else; a belly lifts what lies over it, thicker as it shortens.
+    """
+    left, samples = _as_left(muscle, samples)
+    points = samples.points
+    if isinstance(left, AirPressure):
+        pressure = left.weights(points)
+    elif isinstance(left, LinearMuscle | SphincterMuscle) and left.bulge > 0.0:
+        pressure = left.bulge * left.belly(points)
+    else:
+        return np.zeros_like(points)
+    pressed = (pressure * share_of(left, points, samples.jaw))[:, None] * samples.normals
+    return pressed * FLIP if left is not muscle else pressed
+
+
+def _as_left(muscle: Muscle, samples: Samples) -> tuple[Muscle, Samples]:
+    """Return a right muscle as the left one, on samples mirrored; any other as it is."""
+    if not muscle.name.endswith(".R"):
+        return muscle, samples
+    flipped = replace(samples, points=samples.points * FLIP, normals=samples.normals * FLIP)
+    return mirrored(muscle), flipped
 
 
 def share_of(muscle: Muscle, points: FloatArray, jaw: FloatArray) -> FloatArray:

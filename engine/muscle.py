@@ -21,6 +21,10 @@ Without it both act in full on the midline column and pull it twice; found on th
 """
 SHEET_TAPER = 0.35
 """Outer share of a sheet's half width over which its force fades; the paper has a hard edge."""
+BELLY_PLACE = 0.4
+"""Middle of a linear muscle's belly, as a share of its length from the attachment."""
+BELLY_REACH = 0.5
+"""Distance from there, as a share of the length, at which the belly lifts no more."""
 RING_PEAK = 0.6
 """Radius, as a share of the ellipse, at which the ring profile of a sphincter is greatest."""
 MAX_GAIN = 2.0
@@ -45,6 +49,8 @@ class LinearMuscle:
         extension: True for a muscle that the paper's 23 do not have.
         gain: Share of the force that acts in the left and in the right half of the face, 0..2:
             under 1 for a palsy or a relaxed muscle.
+        bulge: Force with which the belly, thicker as it shortens, lifts what lies over it, as a
+            share of the muscle's own (after Kähler, Haber, Seidel 2001; the paper has none).
         source: Where geometry and values come from.
     """
 
@@ -58,6 +64,7 @@ class LinearMuscle:
     acts_on: str = "skin"
     extension: bool = False
     gain: tuple[float, float] = (1.0, 1.0)
+    bulge: float = 0.0
     source: str = ""
     kind: str = "linear"
 
@@ -91,6 +98,14 @@ class LinearMuscle:
         """Return unit vectors from skin `points`, shape (k, 3), to the attachment (Eq. 5)."""
         return _unit(np.array(self.attachment) - points)
 
+    def belly(self, points: FloatArray) -> FloatArray:
+        """Return how much the belly lifts skin `points`, shape (k, 3), mm → shape (k,), 0..1."""
+        attachment, insertion = np.array(self.attachment), np.array(self.insertion)
+        middle = attachment + BELLY_PLACE * (insertion - attachment)
+        reach = BELLY_REACH * math.dist(self.attachment, self.insertion)
+        within = np.clip(1.0 - ((points - middle) ** 2).sum(axis=1) / reach**2, 0.0, 1.0)
+        return np.asarray(within**2)
+
 
 @dataclass(frozen=True)
 class SphincterMuscle:
@@ -111,6 +126,7 @@ class SphincterMuscle:
         extension: True for a muscle that the paper's 23 do not have.
         gain: Share of the force that acts in the left and in the right half of the face, 0..2:
             under 1 for a palsy or a relaxed muscle.
+        bulge: As a linear muscle's; the ring lifts what it pulls on, where it pulls.
         source: Where geometry and values come from.
     """
 
@@ -127,6 +143,7 @@ class SphincterMuscle:
     acts_on: str = "skin"
     extension: bool = False
     gain: tuple[float, float] = (1.0, 1.0)
+    bulge: float = 0.0
     source: str = ""
     kind: str = "sphincter"
 
@@ -152,6 +169,10 @@ class SphincterMuscle:
     def directions(self, points: FloatArray) -> FloatArray:
         """Return unit vectors from skin `points`, shape (k, 3), to the epicentre (Eq. 10)."""
         return _unit(np.array(self.center) - points)
+
+    def belly(self, points: FloatArray) -> FloatArray:
+        """Return how much the ring lifts skin `points`, shape (k, 3), mm → shape (k,), 0..1."""
+        return self.weights(points)
 
     def radius_at(self, points: FloatArray) -> FloatArray:
         """Return r of Eq. 12 at `points`, shape (k, 3): 0 in the middle, 1 on the rim → (k,)."""

@@ -31,7 +31,7 @@ from .head import (
 )
 from .head.storage import source_key
 from .jaw import JawHinge
-from .muscle import AirPressure, LidMuscle, Muscle, SphincterMuscle, mirrored
+from .muscle import AirPressure, LidMuscle, LinearMuscle, Muscle, SphincterMuscle, mirrored
 from .rig_data import load_action_units, load_combinations, load_emotions, load_muscles
 from .timeline import LAYERS, Keyframe
 from .tissue import PAPER_PARAMETERS, TissueParameters, check_fields
@@ -67,6 +67,7 @@ EDITABLE = (
     "semi_major",
     "semi_minor",
     "hoop",
+    "bulge",
     "extent",
     "upper",
     "lower",
@@ -616,7 +617,9 @@ def _as_in_the_paper(muscle: Muscle) -> Muscle:
         return muscle
     share = PAPER_FORCE_SHARES.get(muscle.name.partition(".")[0], PAPER_FORCE_SHARE)
     weaker = replace(muscle, force_scale=muscle.force_scale * share)
-    return replace(weaker, hoop=0.0) if isinstance(weaker, SphincterMuscle) else weaker
+    if isinstance(weaker, SphincterMuscle):
+        return replace(weaker, hoop=0.0, bulge=0.0)
+    return replace(weaker, bulge=0.0) if isinstance(weaker, LinearMuscle) else weaker
 
 
 def _edited_muscle(muscle: Muscle, changes: Mapping[str, object]) -> Muscle:

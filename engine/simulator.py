@@ -292,15 +292,11 @@ class Simulator:
         assembly, m = self.assembly, self.rig.channels.muscle_count
         activations = state.signals[:m]
         load = state.skull.load.copy()
-        if self.model.forces == "current":
-            # Air presses along the skin's normals at rest in either mode; it has no fibres to move.
-            air = np.where(assembly.air, activations, 0.0)
-            if air.any():
-                add_basis_forces(assembly.basis, assembly.tissue.arrays.grip, air, load)
-            skull = state.skull._replace(load=load)
-            return skull, self._moving_pull(activations, state.signals[m : m + 3])
         add_basis_forces(assembly.basis, assembly.tissue.arrays.grip, activations, load)
-        return state.skull._replace(load=load), assembly.pull
+        skull, pull = state.skull._replace(load=load), assembly.pull
+        if self.model.forces == "current":
+            pull = self._moving_pull(activations, state.signals[m : m + 3])
+        return skull, pull
 
     def _moving_pull(self, activations: FloatArray, jaw: FloatArray) -> Pull:
         """Return the active muscles for mode "current", their ends where the jaw has carried them.
@@ -309,7 +305,7 @@ class Simulator:
             activations: Shape (m,).
             jaw: Pitch and yaw, degrees, thrust, mm, shape (3,).
         """
-        active, pull = (activations != 0.0) & ~self.assembly.air, self.assembly.pull
+        active, pull = activations != 0.0, self.assembly.pull
         moving = Pull(
             pull.kinds[active],
             pull.shape[active],

@@ -77,15 +77,12 @@ def muscle_forces(snapshot: Snapshot) -> FloatArray:
     assembly = snapshot.assembly
     m = assembly.rig.channels.muscle_count
     activations = snapshot.signals[:m]
+    forces = np.asarray(activations[:, None, None] * assembly.basis)
     if assembly.model.forces != "current":
-        return np.asarray(activations[:, None, None] * assembly.basis)
+        return forces
     n = assembly.tissue.node_count
     pitch, yaw, thrust = (float(value) for value in snapshot.signals[m : m + 3])
-    forces = np.zeros((m, 3, n))
     for row in np.flatnonzero(activations):
-        if assembly.air[row]:
-            forces[row] = activations[row] * assembly.basis[row]
-            continue
         one = slice(row, row + 1)
         pull = assembly.pull
         moved = ride_jaw(
@@ -101,7 +98,7 @@ def muscle_forces(snapshot: Snapshot) -> FloatArray:
         )
         force = np.zeros_like(snapshot.x)
         add_muscle_forces(snapshot.x, moved, assembly.tissue.arrays.grip, force)
-        forces[row] = force.reshape(3, 3, n).sum(axis=1)
+        forces[row] += force.reshape(3, 3, n).sum(axis=1)
     return forces
 
 

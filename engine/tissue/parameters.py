@@ -103,13 +103,13 @@ class TissueParameters:
     anchor_excess_distance: float = 5.0
     skull_stiffness: float = 5.0
     skull_gap: float = 1.5
-    damping: float = 36.0
+    damping: float = 32.0
     mass_frequency: float = 750.0
     activation_lag: float = 0.040
     lid_lag: float = 0.010
     pretension: float = 0.12
-    skin_volume: float = 100.0
-    layer_order: float = 9.0
+    skin_volume: float = 200.0
+    layer_order: float = 6.0
     layer_gap: float = 0.8
     thin_skin_grip: bool = True
     plate: float = 0.0

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from engine import Flesh, Keyframe, Rig, Simulator, examine, path_dependence, random_mixes
 from engine.flesh import RIGID_REGIONS, element_volumes
@@ -86,3 +89,30 @@ def test_without_volume_layers_pass_each_other(standard_rig):
     turned = examine(bare, face)[0]
     assert turned.inverted > 20
     assert np.isfinite(turned.volume)
+
+
+def test_cheeks_bulge_in_a_smile(standard_rig):
+    """The apple of the cheek stands out from where the skin was, and does not only slide up."""
+    smile = Keyframe(action_units={"AU6": 1.0, "AU12": 1.0})
+    assert cheek_stands_out(standard_rig, smile) > 2.0
+    flat = [
+        replace(muscle, bulge=0.0) if hasattr(muscle, "bulge") else muscle
+        for muscle in standard_rig.muscles
+    ]
+    assert cheek_stands_out(replace(standard_rig, muscles=tuple(flat)), smile) < 1.0
+
+
+def cheek_stands_out(rig: Rig, keyframe: Keyframe) -> float:
+    """Return how far the skin under the eye's outer half stands out of its rest surface, mm."""
+    simulator = Simulator(rig)
+    simulator.add("face")
+    simulator.apply("face", keyframe)
+    for _ in range(60):
+        simulator.step()
+    drawn = rig.head.drawn
+    moved = drawn.deform(simulator.frame("face").displacements, rig.head.eyes)
+    x, y, _ = moved.T
+    apple = (x > 38) & (x < 55) & (y < -20) & (y > -48)
+    nearest = np.asarray(cKDTree(drawn.vertices).query(moved[apple])[1])
+    out = ((moved[apple] - drawn.vertices[nearest]) * drawn.normals[nearest]).sum(axis=1)
+    return float(out.mean())

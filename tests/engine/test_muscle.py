@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine import InvalidValue
+from engine import InvalidValue, Simulator
 from engine.dynamics import Pull, add_muscle_forces
 from engine.force_basis import (
     Samples,
@@ -18,7 +18,10 @@ from engine.force_basis import (
     jaw_rides,
     moving_pull,
     packed_shape,
+    press_density,
+    rest_basis,
     ride_jaw,
+    share_of,
 )
 from engine.muscle import (
     RING_PEAK,
@@ -234,6 +237,38 @@ def test_nonsense_geometry_is_refused_with_what_was_given():
         SphincterMuscle("r", (0, 0, 1), (0, 0, 0), (0, 0, 1), 20.0, 0.0, 1.0)
 
 
+def test_a_belly_lifts_the_skin_over_it_and_not_at_its_ends():
+    muscle = LinearMuscle("m.L", (0, 0, 0), (40, 0, 0), 50.0, 30.0, 1.0, 1.0, bulge=0.5)
+    points = np.array([[16.0, 0.0, 0.0], [26.0, 0.0, 0.0], [40.0, 0.0, 0.0], [16.0, 20.0, 0.0]])
+    normals = np.array([[0.0, 0.6, 0.8]] * 4)
+    assert muscle.belly(points) == pytest.approx([1.0, 0.5625, 0.0, 0.0])
+    samples = Samples(points, normals, np.zeros(4))
+    pressed = press_density(muscle, samples)
+    midline = share_of(muscle, points, samples.jaw)
+    assert pressed == pytest.approx((0.5 * muscle.belly(points) * midline)[:, None] * normals)
+    assert not press_density(replace(muscle, bulge=0.0), samples).any()
+    # What pulls does not press, and the pull is the same with a belly or without.
+    bare = force_density(replace(muscle, bulge=0.0), samples, ring="ring")
+    np.testing.assert_array_equal(force_density(muscle, samples, ring="ring"), bare)
+
+
+def test_bellies_press_in_both_force_modes(standard_rig):
+    """In mode "current" the pull moves with the skin, and only what presses is a basis."""
+    head, muscles = standard_rig.head, standard_rig.muscles
+    tissue = Simulator(standard_rig).assembly.tissue
+    whole = rest_basis(head, tissue, muscles, ring="ring")
+    flat = [replace(m, bulge=0.0) if hasattr(m, "bulge") else m for m in muscles]
+    pulls = rest_basis(head, tissue, flat, ring="ring")
+    presses = rest_basis(head, tissue, muscles, ring="ring", pressing_only=True)
+    named = {
+        muscles[row].name.partition(".")[0] for row in range(len(muscles)) if presses[row].any()
+    }
+    assert named == {"zygomatic_major", "orbicularis_oculi", "cheek_air", "lip_air"}
+    bellied = [row for row, m in enumerate(muscles) if getattr(m, "bulge", 0.0) > 0.0]
+    assert len(bellied) == 4
+    np.testing.assert_allclose(whole[bellied], (pulls + presses)[bellied], atol=1e-9)
+
+
 def test_air_presses_along_the_skins_normals_and_fades_at_its_edge():
     air = AirPressure(
         "cheek_air.L", center=(40.0, 0.0, 0.0), extent=(10.0, 20.0, 30.0), force_scale=1.0
@@ -242,12 +277,11 @@ def test_air_presses_along_the_skins_normals_and_fades_at_its_edge():
     normals = np.array([[0.6, 0.0, 0.8]] * 4)
     assert air.weights(points) == pytest.approx([1.0, 0.5625, 0.0, 0.0])
     samples = Samples(points, normals, np.zeros(4))
-    force = force_density(air, samples, ring="ring")
+    force = press_density(air, samples)
     assert force == pytest.approx(air.weights(points)[:, None] * normals)
+    assert not force_density(air, samples, ring="ring").any()
     flip = np.array([-1.0, 1.0, 1.0])
-    other = force_density(
-        mirrored(air), Samples(points * flip, normals * flip, np.zeros(4)), ring="ring"
-    )
+    other = press_density(mirrored(air), Samples(points * flip, normals * flip, np.zeros(4)))
     assert other == pytest.approx(force * flip)
     with pytest.raises(InvalidValue, match="extent"):
         replace(air, extent=(1.0, 0.0, 1.0))
