@@ -12,27 +12,13 @@ from ..errors import InvalidValue, UnknownName
 from ..head import Head
 from .layers import Sheet
 from .parameters import TissueParameters
+from .places import WHOLE_FACE, region_share, tautness
 
-WHOLE_FACE = "face"
-"""Region that holds every other one."""
 LAXITY_OF_TENSION = 0.4
 """Share of the pre-tension that wholly lax skin has lost; a face that loses 80 % crumples."""
 LAXITY_OF_FIBRES = 0.35
 """Share of the stiffness below the strain threshold, and of the ties to the skull, that wholly lax
 skin has lost; elasticity halves from 20 to 80 years (Cua, Wilhelm, Maibach 1990)."""
-THROAT_REGIONS = ("submental", "neck")
-TAUT: Mapping[str, float] = {
-    "submental": 3.3,
-    "neck": 1.7,
-    "forehead": 2.5,
-    "scalp": 2.0,
-}
-"""How much more than the face's the skin of some regions is pre-tensioned.
-
-Over the platysma: with as little tension as the rest a wide open mouth comes to rest in one of two
-shapes, 9 mm apart. Over the galea: a raised brow pushes the middle of the forehead 3 mm aside, to
-the left or to the right after what went before.
-"""
 MOST_TENSION = 0.4
 """Greatest pre-tension anywhere; the same bound as on what an edit asks for."""
 SPREAD_MM = 18.0
@@ -92,7 +78,7 @@ def fields_of(head: Head, sheet: Sheet, parameters: TissueParameters) -> TissueF
         slack=1.0 - LAXITY_OF_FIBRES * laxity,
         pretension=np.minimum(
             p.pretension
-            * _tautness(sheet)
+            * tautness(sheet)
             * _region_factor(sheet, p.region_pretension)
             * (1.0 - LAXITY_OF_TENSION * laxity),
             MOST_TENSION,
@@ -127,38 +113,11 @@ def check_fields(head: Head, parameters: TissueParameters) -> None:
             )
 
 
-def region_share(sheet: Sheet, region: str) -> FloatArray:
-    """Return each node's share of the polygons of a region, shape (n,).
-
-    Args:
-        sheet: The surface.
-        region: A label, a part of several ("lip"), or "face"; ".L" or ".R" takes one side of it.
-    """
-    stem, _, side = region.partition(".")
-    inside = np.array([stem == WHOLE_FACE or stem in label for label in sheet.polygon_regions])
-    share, total = np.zeros(len(sheet.points)), np.zeros(len(sheet.points))
-    for k in range(4):
-        has = sheet.polygons[:, k] >= 0
-        corner = sheet.polygons[has, k]
-        np.add.at(share, corner, inside[has].astype(float))
-        np.add.at(total, corner, 1.0)
-    share = np.asarray(share / np.maximum(total, 1.0))
-    if side:
-        sign = np.sign(sheet.points[:, 0]) * (1.0 if side == "L" else -1.0)
-        share = share * (0.5 + 0.5 * sign)
-    return share
-
-
 def _region_factor(sheet: Sheet, factors: Mapping[str, float]) -> FloatArray:
     scale = np.ones(len(sheet.points))
     for region, factor in factors.items():
         scale *= 1.0 + (factor - 1.0) * region_share(sheet, region)
     return scale
-
-
-def _tautness(sheet: Sheet) -> FloatArray:
-    by_region = [1.0 + (factor - 1.0) * region_share(sheet, name) for name, factor in TAUT.items()]
-    return np.asarray(np.max(by_region, axis=0))
 
 
 def _region_value(sheet: Sheet, values: Mapping[str, float]) -> FloatArray:

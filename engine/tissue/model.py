@@ -24,17 +24,16 @@ from ..dynamics import (
 from ..head import Head
 from ..head.anatomy import smoothstep
 from .contact import TARSAL_RINGS, Lids, contacts_of, lids_of, ring_and_spoke
-from .fields import THROAT_REGIONS, fields_of, region_share
+from .fields import fields_of
 from .layers import Layers, Sheet, prism_volumes, sheet_of, stack_layers
 from .parameters import TissueParameters
+from .places import LIGAMENT_POINTS, firmness, stubbornness
 from .springs import build_springs, reference_area
 
 NORMAL_ANCHOR_FLOOR = 0.25
 """Least regional weight of the normal tie: even loose skin does not lift off the skull."""
 FAT_DEPTH_MM = (8.5, 11.5)
 """Skin depth over which the fat pressure fades in; on a thin forehead it does harm."""
-LIGAMENT_POINTS = ("M4_3", "M4_4", "C4_5")
-"""Cage points on the nasolabial fold, where ligaments tie the skin to the bone."""
 PRESSURE_FREE_RINGS = ("EB", "E0", "E1", "E2", "S1", "M0")
 """Rings of lids and inner lips: their columns have no bone under them."""
 SPARED_ELEMENTS = 0.1
@@ -43,11 +42,6 @@ THIN_MM = 0.6
 PRESSED, PRESSED_THIN = 0.3, -0.2
 """Least share of its volume that an element keeps in any expression, by the length of its columns:
 what masses count."""
-INNER_LIP_ORDER = 1.6
-"""Factor on the resistance to being pressed flat behind the upper lip, whose elements are the
-thinnest, and are stretched over the teeth by every smile."""
-THROAT_VOLUME = 3.2
-"""Factor on the volume modulus under the chin, where a wide open jaw pushes the skin together."""
 LEAST_ELEMENT_MM = 0.6
 """Thickness from which an element's stiffness is counted; a flat one would hardly resist."""
 SPARED_SHARE = 2.1
@@ -293,10 +287,8 @@ def _prisms(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Pr
     size = 0.5 * np.linalg.norm(
         np.cross(middle[:, 1] - middle[:, 0], middle[:, 2] - middle[:, 0]), axis=1
     )
-    throat = np.maximum(*(region_share(sheet, region) for region in THROAT_REGIONS))
-    inner = region_share(sheet, "upper_lip_inner")[corners % n].max(axis=1)
-    stubborn = 1.0 + (INNER_LIP_ORDER - 1.0) * inner
-    firm = 1.0 + (THROAT_VOLUME - 1.0) * throat[corners % n].max(axis=1)
+    firm = firmness(sheet, corners % n)
+    stubborn = stubbornness(head, sheet, corners % n)
     thickness = np.maximum(volume / size, LEAST_ELEMENT_MM)
     # Of a lid's plate all corners are moved: it cannot lose volume.
     keep = np.tile(~_held(head)[upper].all(axis=1), 2) & (volume > 0.0) & (p.skin_volume > 0.0)
