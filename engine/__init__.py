@@ -20,7 +20,7 @@ from .errors import (
     UnknownName,
 )
 from .facs import LETTERS, REGIONS, ActionUnit, Term, format_facs, parse_facs
-from .flesh import Flesh, examine, path_dependence, random_mixes
+from .flesh import Flesh, examine, jolts, path_dependence, random_mixes
 from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
@@ -109,6 +109,7 @@ __all__ = [
     "head_textures",
     "hold_units",
     "invert",
+    "jolts",
     "judge",
     "keep",
     "landmarks_68",

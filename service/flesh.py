@@ -15,6 +15,7 @@ from engine import (
     Rig,
     Simulator,
     examine,
+    jolts,
     path_dependence,
     random_mixes,
 )
@@ -58,6 +59,7 @@ _EXPRESSION_HEAD = (
     "left-right, mm",
     "mm/s",
     "path, mm",
+    "jolt, mm",
     "through",
 )
 _TERM_HEAD = (
@@ -92,13 +94,15 @@ def measure_flesh(rig: Rig, mixes: int, show: Stage) -> dict[str, Any]:
     single = examine(rig, list(expressions.values()))
     show(f"{len(expressions)} expressions from {HISTORIES} pasts")
     paths = path_dependence(rig, list(expressions.values()), histories=HISTORIES)
+    show(f"{len(expressions)} expressions taken up and let go slowly")
+    abrupt = jolts(rig, list(expressions.values()))
     show(f"{mixes} random mixes")
     mixed = examine(rig, random_mixes(rig, mixes, MIX_SEED))
     return {
         "rig": rig.id,
         "expressions": {
-            name: {**_row(flesh), "path_mm": round(path, 3)}
-            for name, flesh, path in zip(expressions, single, paths, strict=True)
+            name: {**_row(flesh), "path_mm": round(path, 3), "jolt_mm": round(jolt, 3)}
+            for name, flesh, path, jolt in zip(expressions, single, paths, abrupt, strict=True)
         },
         "mixes": _summary(mixed),
         "terms": _terms(rig, show),
@@ -203,6 +207,7 @@ def flesh_markdown(figures: dict[str, Any]) -> str:
                 f"{row['asymmetry_mm']:.2f}",
                 f"{row['speed_mm_s']:.2f}",
                 f"{row['path_mm']:.2f}",
+                f"{row['jolt_mm']:.2f}",
                 sum(row["through"].values()),
             )
         )

@@ -29,7 +29,9 @@ EMOTIONS = ("happiness", "sadness", "fear", "anger", "surprise", "disgust", "con
 @pytest.fixture(scope="module")
 def faces(standard_rig) -> dict[tuple[str, float], Face]:
     keys = [(name, intensity) for name in EMOTIONS for intensity in INTENSITIES]
-    return dict(zip(keys, settle(standard_rig, [Keyframe(emotion=key) for key in keys]), strict=True))
+    return dict(
+        zip(keys, settle(standard_rig, [Keyframe(emotion=key) for key in keys]), strict=True)
+    )
 
 
 def up(face: Face, point: str) -> float:
