@@ -82,7 +82,7 @@ GAUGES = (
     Gauge("lower_lid", "EB_15.L", "E4_12.L", 7.5, slack=0.035),
     Gauge("nasolabial", "M4_4.L", "C4_3.L", 5.6, slack=0.017),
     Gauge("nasolabial_upper", "E3_15.L", "A6.L", 13.0, slack=0.009, weight=0.8),
-    Gauge("chin", "M4_10", "S1_2.L", 13.0, slack=0.054),
+    Gauge("chin", "M4_10", "M0_2.L", 11.5, slack=0.05),
 )
 
 
