@@ -29,7 +29,7 @@ Over the platysma: with as little tension as the rest a wide open mouth comes to
 shapes, 9 mm apart. Over the galea: a raised brow pushes the middle of the forehead 3 mm aside, to
 the left or to the right after what went before.
 """
-FIRM: Mapping[str, float] = {"submental": 3.2, "neck": 3.2}
+FIRM: Mapping[str, float] = {"submental": 1.6, "neck": 1.6}
 """Factor on the volume modulus: a wide open jaw pushes the skin under the chin together."""
 STUBBORN: Mapping[str, float] = {"upper_lip_inner": 1.6}
 """Factor on the resistance to being pressed flat: these elements are the thinnest, and are

@@ -101,8 +101,10 @@ def test_without_volume_layers_pass_each_other(standard_rig):
 
 
 def test_contact_sets_in_without_a_pop(standard_rig):
-    """Lips on lips and teeth, lids on eyes and lids: 0.15 mm a tick is a step in speed of 9 mm/s,
-    where a jaw that opens in two seconds moves at 30."""
+    """Lips on lips and teeth, lids on eyes and lids.
+
+    A jolt of 0.15 mm is a step in speed of 9 mm/s; a jaw that opens in two seconds moves at 30.
+    """
     touching = ("AU18", "AU23", "AU24", "AU27", "AU28", "AU43")
     faces = [Keyframe(action_units={unit: 1.0}) for unit in touching]
     found = dict(zip(touching, jolts(standard_rig, faces), strict=True))
