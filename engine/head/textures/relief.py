@@ -216,7 +216,7 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
                     continue
                 long = 13.0 + 11.0 * other - 1.2 * abs(k - 2.5)
                 fan = _ramp(3.5 + 2 * own, 8.0 + 2 * own, reach) * np.exp(-((reach / long) ** 4))
-                share = 0.24 + 0.24 * own
+                share = 0.36 + 0.32 * own
                 depth += fan * share * _crease(gap, 0.46 + 0.012 * reach)
                 if other > 0.45:
                     fork = 0.30 * max(reach - 10.0, 0.0) * (1 if own > 0.5 else -1)
@@ -253,8 +253,8 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         depth += 0.45 * np.exp(-(((gap + 0.3 * w6) / 1.5) ** 2)) * (1 - share) ** 0.5
         mask = _spot(x, y, 0.0, -103.0, 17.0, 11.0)
         if mask > 0.01:
-            knot = spot_noise(side / 4.4, y / 4.4, z / 4.4, 0.95, 0.34, 0.62, seed + 72)
-            depth += mask * (0.52 * _ramp(0.0, 1.0, knot + 0.15 * w2) - 0.1)
+            knot = value_noise(side / 4.8, y / 3.9, z / 6.0, seed + 72) + 0.35 * w2
+            depth += mask * (0.55 * _ramp(-0.1, 0.8, knot) - 0.1)
         # Lines that purse the lips.
         if lip_depth < 0.5 and x < 26:
             mask = np.exp(-(((lip_depth + 2.5) / 3.2) ** 2)) * (1 - (x / 27) ** 4)
