@@ -72,3 +72,13 @@ def test_units_press_their_sites(standard_rig: Rig, wrinkles: Wrinkles, unit: st
 
 def test_paper_has_none(paper_rig: Rig) -> None:
     assert wrinkles_of(paper_rig.head) is None
+
+
+def test_a_smile_creases_the_skin_round_the_eye(standard_rig: Rig, wrinkles: Wrinkles) -> None:
+    """The raised cheek of AU12 does not take away what AU6 folds; a slight frown shows."""
+    smile = {"AU6": 1.0, "AU12": 1.0}
+    for units, sites in ((smile, ("crows_feet", "lower_lid")), ({"AU4": 0.4}, ("glabella",))):
+        frame = settled(standard_rig, [Keyframe(action_units=units, fade=0.15)])[0]
+        strength = at_places(standard_rig, wrinkles(standard_rig.head.points + frame.displacements))
+        for site in sites:
+            assert strength[site] > (0.7 if units is smile else 0.2), strength
