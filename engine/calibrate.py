@@ -1,12 +1,15 @@
 """Fits each action unit's curve: intensity becomes the fraction of the full landmark displacement.
 
 Run `python -m engine.calibrate` after a change to tissue, muscles or recipes, or with the units to
-fit, `… AU12 AU18`; it rewrites the curves in `engine/data/action_units.json`.
+fit, `… AU12 AU18`; it rewrites the curves in `engine/data/action_units.json`. `… people` then
+rewrites `engine/data/reaches.json`: what the curves are scaled by on the people whose landmarks
+would move farther, or less far, than those of human faces.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import sys
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,8 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from .arrays import FloatArray
-from .measure import LANDMARKS, Landmark, settle
+from .head import people
+from .measure import LANDMARKS, Landmark, measure_units, settle
 from .rig import Rig, builtin_rig
+from .rig_data import load_action_units
 from .timeline import Keyframe
 
 SCALES = np.round(np.arange(0.1, 1.81, 0.1), 3)
@@ -24,6 +29,13 @@ SCALES = np.round(np.arange(0.1, 1.81, 0.1), 3)
 INTENSITIES = (0.25, 0.5, 0.75, 1.0)
 AIM = 0.3
 """Where in the human range the full displacement is put: 0 its low end, 1 its high end."""
+
+
+SPARE = 0.05
+"""Share of the human range that people are brought inside its ends."""
+FARTHEST_REACH = (0.6, 1.6)
+"""Least and greatest factor on a person's curve."""
+REACH_ROUNDS = 3
 
 
 def fit_curve(scales: FloatArray, values: FloatArray, full: float) -> list[list[float]]:
@@ -75,14 +87,60 @@ def _curve(rig: Rig, landmark: Landmark, top: float) -> list[list[float]]:
     return fit_curve(np.concatenate([[0.0], SCALES]), values, full)
 
 
+def reaches(rig: Rig) -> dict[str, float]:
+    """Return the factors on the curves of a rig's units that bring its landmarks into range.
+
+    Units that are in range by `SPARE` of it have none. A unit with several landmarks gets the
+    factor nearest 1 that suits all of them, if one does, or else the one that is calibrated.
+    """
+    factors: dict[str, float] = {}
+    for _ in range(REACH_ROUNDS):
+        units = {
+            name: unit.reaching(factors[name]) if name in factors else unit
+            for name, unit in rig.action_units.items()
+        }
+        low: dict[str, float] = {}
+        high: dict[str, float] = {}
+        for found in measure_units(replace(rig, action_units=units)):
+            mark, value = found.landmark, found.value
+            if mark.scale != "mm" or min(value, mark.low) <= 0.0:
+                continue
+            spare = SPARE * (mark.high - mark.low)
+            least, most = (mark.low + spare) / value, (mark.high - spare) / value
+            if mark.unit in low and not mark.calibrates and least > high[mark.unit]:
+                continue
+            low[mark.unit] = max(low.get(mark.unit, 0.0), least)
+            high[mark.unit] = min(high.get(mark.unit, math.inf), most)
+        for unit, least in low.items():
+            most = max(high[unit], least)
+            factor = factors.get(unit, 1.0) * min(max(1.0, least), most)
+            factor = min(max(factor, FARTHEST_REACH[0]), FARTHEST_REACH[1])
+            if factor != 1.0:
+                factors[unit] = round(factor, 3)
+    return factors
+
+
 def main() -> None:
-    """Rewrite the curves of the built-in action units."""
-    path = Path(__file__).parent / "data" / "action_units.json"
-    data = json.loads(path.read_text(encoding="utf-8"))
+    """Rewrite the curves of the built-in action units, or the reaches of the people."""
+    data = Path(__file__).parent / "data"
+    if sys.argv[1:] == ["people"]:
+        _write_reaches(data / "reaches.json")
+        return
+    path = data / "action_units.json"
+    stored = json.loads(path.read_text(encoding="utf-8"))
     curves = calibrate(builtin_rig("standard"), *sys.argv[1:])
-    for entry in data["action_units"]:
+    for entry in stored["action_units"]:
         entry["curve"] = curves.get(entry["name"], entry["curve"])
-    path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    path.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
+
+
+def _write_reaches(path: Path) -> None:
+    stored = json.loads(path.read_text(encoding="utf-8"))
+    plain = load_action_units()
+    for name in people():
+        rig = replace(builtin_rig(name), action_units=plain)
+        stored["people"][name] = dict(sorted(reaches(rig).items()))
+    path.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

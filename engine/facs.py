@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from .errors import InvalidNotation
 
@@ -76,6 +76,10 @@ class ActionUnit:
                 return last_scale + (scale - last_scale) * share
             last_intensity, last_scale = knot, scale
         return last_scale
+
+    def reaching(self, factor: float) -> ActionUnit:
+        """Return the unit with its curve scaled: on a face that it moves too far or not enough."""
+        return replace(self, curve=tuple((knot, factor * scale) for knot, scale in self.curve))
 
 
 @dataclass(frozen=True)

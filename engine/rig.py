@@ -32,7 +32,13 @@ from .head import (
 from .head.storage import source_key
 from .jaw import JawHinge
 from .muscle import AirPressure, LidMuscle, LinearMuscle, Muscle, SphincterMuscle, mirrored
-from .rig_data import load_action_units, load_combinations, load_emotions, load_muscles
+from .rig_data import (
+    load_action_units,
+    load_combinations,
+    load_emotions,
+    load_muscles,
+    load_reaches,
+)
 from .timeline import LAYERS, Keyframe
 from .tissue import PAPER_PARAMETERS, TissueParameters, check_fields
 
@@ -536,7 +542,18 @@ def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high"
     )
     strength = muscle_strength(recipe) / muscle_strength(STANDARD)
     muscles = tuple(_as_strong(muscle, strength) for muscle in rig.muscles)
-    return replace(rig, name=name, recipe=recipe, muscles=muscles, level=level)
+    units = dict(rig.action_units)
+    for unit, factor in _reaches(recipe).items():
+        units[unit] = units[unit].reaching(factor)
+    return replace(rig, name=name, recipe=recipe, muscles=muscles, level=level, action_units=units)
+
+
+def _reaches(recipe: Recipe) -> Mapping[str, float]:
+    """Return the factors on units' curves that were measured on a person of this very recipe."""
+    for person in people().values():
+        if person.recipe == recipe:
+            return load_reaches().get(person.name, {})
+    return {}
 
 
 def rig_from_head(

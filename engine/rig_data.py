@@ -49,6 +49,12 @@ def load_action_units() -> dict[str, ActionUnit]:
     return units
 
 
+def load_reaches() -> Mapping[str, Mapping[str, float]]:
+    """Return the factors on the units' curves by person, where the standard ones fall short."""
+    reaches: Mapping[str, Mapping[str, float]] = _read("reaches.json")["people"]
+    return reaches
+
+
 def load_combinations() -> tuple[Combination, ...]:
     """Return the rules of units that act together."""
     entries = _read("combinations.json")["combinations"]

@@ -111,7 +111,9 @@ def _best_fan(outline: list[str], half: HalfCage) -> list[tuple[str, ...]]:
     best: tuple[float, list[tuple[str, ...]]] = (-1.0, [])
     for start in range(len(outline)):
         ring = outline[start:] + outline[:start]
-        fan = [(ring[0], first, second) for first, second in pairwise(ring[1:])]
+        fan: list[tuple[str, ...]] = [
+            (ring[0], first, second) for first, second in pairwise(ring[1:])
+        ]
         least = min(
             float(smallest_angles(np.array([half.points[name] for name in piece]))) for piece in fan
         )

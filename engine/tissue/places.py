@@ -58,7 +58,7 @@ def stubbornness(head: Head, sheet: Sheet, corners: np.ndarray) -> FloatArray:
     by_region = _greatest(sheet, STUBBORN)[corners].max(axis=1)
     names = [name.partition(".")[0] for name in head.names[: head.sheet_count]]
     by_point = np.array([STUBBORN_POINTS.get(name, 1.0) for name in names])
-    return np.maximum(by_region, by_point[corners].min(axis=1))
+    return np.asarray(np.maximum(by_region, by_point[corners].min(axis=1)))
 
 
 def region_share(sheet: Sheet, region: str) -> FloatArray:
