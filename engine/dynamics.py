@@ -42,6 +42,9 @@ LEAST_VOLUME, MOST_VOLUME = -1.0, 1.5
 """Shares of its volume beyond which an element pulls no harder: torn open or turned over by a jump
 of the jaw, it would else be stiffer than its mass allows."""
 
+ARCH_ROUND_MM = 2.0
+"""Half height over which the edge of the upper dental arch turns inwards."""
+
 TABLEAUS: dict[str, FloatArray] = {
     "rk2": np.array([[0.5, 0.0], [0.0, 1.0]]),
     "heun": np.array([[1.0, 0.5], [0.0, 0.5]]),
@@ -702,10 +705,14 @@ def resolve_teeth(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
         # Level in the middle: a kink there would push the midline to one side.
         nx = -slope * min(max(x[0, i], -1.0), 1.0)
         ny = 0.0
-        if x[1, i] < contacts.arch_bottom:
+        below = contacts.arch_bottom - x[1, i]
+        if below > -ARCH_ROUND_MM:
             # Below the edge of the upper teeth a dropping lower lip may swing back with the jaw.
-            front -= (contacts.arch_bottom - x[1, i]) * contacts.arch_fall
-            ny = -contacts.arch_fall
+            # The edge is round: over a sharp one a lip that is sucked in snaps.
+            past = min(below + ARCH_ROUND_MM, 2.0 * ARCH_ROUND_MM) / (2.0 * ARCH_ROUND_MM)
+            fallen = ARCH_ROUND_MM * past * past + max(below - ARCH_ROUND_MM, 0.0)
+            front -= fallen * contacts.arch_fall
+            ny = -contacts.arch_fall * past
         inside = front - x[2, i]
         if inside > 0.0:
             squared = nx * nx + ny * ny + 1.0

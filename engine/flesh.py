@@ -141,8 +141,8 @@ def path_dependence(
 def jolts(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 2.0) -> list[float]:
     """Return how abruptly each expression moves while it is taken up and let go slowly, mm a tick.
 
-    The figure is the greatest change of any point's step from one tick to the next: contact that
-    sets in or lets go with a pop shows there, a smooth motion does not.
+    The figure is the greatest change of any visible point's step from one tick to the next:
+    contact that sets in or lets go with a pop shows there, a smooth motion does not.
     """
     simulator = Simulator(rig)
     names = [str(index) for index in range(len(keyframes))]
@@ -151,6 +151,7 @@ def jolts(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 2.0) -> l
         [Keyframe(fade=seconds, replace=True)] * len(keyframes),
     ]
     worst = np.zeros(len(names))
+    seen = _seen(rig)
     for name in names:
         simulator.add(name)
     places = [[simulator.frame(name).displacements] * 2 for name in names]
@@ -162,10 +163,17 @@ def jolts(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 2.0) -> l
             for index, name in enumerate(names):
                 now = simulator.frame(name).displacements
                 before, last = places[index]
-                change = np.linalg.norm(now - 2.0 * last + before, axis=1).max()
+                change = np.linalg.norm((now - 2.0 * last + before)[seen], axis=1).max()
                 worst[index] = max(worst[index], float(change))
                 places[index] = [last, now]
     return [float(value) for value in worst]
+
+
+def _seen(rig: Rig) -> IntArray:
+    """Return the tissue points that are not only of the inner side of a lip, shape (k,)."""
+    head = rig.head
+    outside = np.array(["inner" not in region for region in head.polygon_regions])
+    return np.unique(head.polygons[outside][head.polygons[outside] >= 0])
 
 
 def element_volumes(x: FloatArray, sheet: Sheet) -> FloatArray:

@@ -68,8 +68,8 @@ def standard_head(level: str = "high") -> Head:
     """Return the built-in head.
 
     Args:
-        level: Detail of the drawn skin: "low" (3,516 triangles), "medium" (7,464) or "high"
-            (29,592). The tissue is the same at all levels.
+        level: Detail of the drawn skin: "low" (3,660 triangles), "medium" (7,164) or "high"
+            (28,416). The tissue is the same at all levels.
 
     Raises:
         UnknownName: There is no such level.

@@ -103,12 +103,12 @@ class TissueParameters:
     anchor_excess_distance: float = 5.0
     skull_stiffness: float = 5.0
     skull_gap: float = 1.5
-    damping: float = 32.0
+    damping: float = 31.0
     mass_frequency: float = 750.0
     activation_lag: float = 0.040
     lid_lag: float = 0.010
     pretension: float = 0.12
-    skin_volume: float = 200.0
+    skin_volume: float = 175.0
     layer_order: float = 6.0
     layer_gap: float = 0.8
     thin_skin_grip: bool = True

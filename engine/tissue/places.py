@@ -35,8 +35,8 @@ STUBBORN: Mapping[str, float] = {"upper_lip_inner": 1.6}
 """Factor on the resistance to being pressed flat: these elements are the thinnest, and are
 stretched over the teeth by every smile."""
 STUBBORN_POINTS: Mapping[str, float] = {
-    **dict.fromkeys(("M0_5", "M0_6", "M1_6"), 2.0),  # the corner of the lips
-    **dict.fromkeys(("E1_8", "E2_8", "E2_9"), 2.0),  # the outer corner of the eye
+    **dict.fromkeys(("M0_5", "M0_6", "M1_6"), 3.2),  # the corner of the lips
+    **dict.fromkeys(("E1_8", "E2_8", "E2_9"), 3.2),  # the outer corner of the eye
 }
 """The same for elements between such points, where skin turns sharply."""
 LIGAMENT_POINTS = ("M4_3", "M4_4", "C4_5")

@@ -20,7 +20,7 @@ EAR_RADII = np.array([21.0, 40.0, 29.0])
 """What hair keeps clear of beside the head, mm: an ellipsoid about each ear."""
 CANDIDATES = 3.0
 """Places tried for each root, so that roots keep their distance."""
-HAIRLINE_DENSITY = 5.0
+HAIRLINE_DENSITY = 4.8
 """How many more, but thinner, cards make up the front hairline."""
 PACKING = 0.72
 """That distance, of the mean distance of roots in a square grid."""
