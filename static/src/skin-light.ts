@@ -51,7 +51,8 @@ void RE_Direct_Skin(
   float crease = saturate(dotNL + 2.0 * skinOpen * skinOpen);
   // A light behind the head reaches its edges alone; what faces the camera it would have to pass the head for.
   float facing = saturate(dot(skinSmooth, geometryViewDir));
-  crease *= mix(1.0, smoothstep(0.5, -0.04, facing), smoothstep(0.0, -0.35, dot(light, geometryViewDir)));
+  float edge = smoothstep(0.5, -0.04, facing) * smoothstep(0.78, 0.92, skinOpen);
+  crease *= mix(1.0, edge, smoothstep(0.0, -0.35, dot(light, geometryViewDir)));
   vec3 irradiance = scatteredCosine(cosines) * directLight.color * crease;
 
   vec3 halfway = normalize(light + geometryViewDir);
