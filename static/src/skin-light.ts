@@ -9,8 +9,9 @@ import { replaced } from './shader-edit';
  * a bend it reaches, as in pre-integrated skin shading (Penner, SIGGRAPH 2011).
  */
 export const SKIN_LIGHT = /* glsl */ `
-/** Set before the lights: relief-free normal, curvature [1/mm], thinness, openness, share that is skin and not hair. */
+/** Set before the lights: relief-free normal, that with broad folds, curvature [1/mm], thinness, openness, share that is skin and not hair. */
 vec3 skinSmooth;
+vec3 skinFolded;
 float skinBend;
 float skinThin;
 float skinOpen;
@@ -46,10 +47,11 @@ void RE_Direct_Skin(
 ) {
   vec3 light = directLight.direction;
   float dotNL = dot(geometryNormal, light);
-  vec3 cosines = mix(vec3(dotNL), vec3(dot(skinSmooth, light)), BLUR * skinBare);
+  vec3 cosines = mix(vec3(dotNL), vec3(dot(skinFolded, light)), BLUR * skinBare);
   // A crease sees little of a light that stands low over it (Chan, SIGGRAPH 2018).
   float crease = saturate(dotNL + 2.0 * skinOpen * skinOpen);
-  // A light behind the head reaches its edges alone; what faces the camera it would have to pass the head for.
+  // A light behind the head reaches its edges alone; what faces the camera it would have to pass the head for, and
+  // what lies beside the nose the cheek. It throws no shadow, so that the openness tells edges that stand free.
   float facing = saturate(dot(skinSmooth, geometryViewDir));
   float edge = smoothstep(0.5, -0.04, facing) * smoothstep(0.78, 0.92, skinOpen);
   crease *= mix(1.0, edge, smoothstep(0.0, -0.35, dot(light, geometryViewDir)));

@@ -37,6 +37,10 @@ uniform sampler2D poreMap;
 const float mapsShown = 0.0;
 #endif
 
+/** How many times a texture must be halved for texels as large as pixels, by how texels change across and down. */
+float textureLevel(vec2 across, vec2 down) {
+  return 0.5 * log2(max(max(dot(across, across), dot(down, down)), 1e-12));
+}
 float hash(vec3 p) {
   p = fract(p * 0.3183099 + 0.1) * 17.0;
   return fract(p.x * p.y * p.z * (p.x + p.y + p.z));
@@ -49,6 +53,11 @@ float noise(vec3 x) {
     mix(mix(hash(i), hash(i + vec3(1, 0, 0)), f.x), mix(hash(i + vec3(0, 1, 0)), hash(i + vec3(1, 1, 0)), f.x), f.y),
     mix(mix(hash(i + vec3(0, 0, 1)), hash(i + vec3(1, 0, 1)), f.x), mix(hash(i + vec3(0, 1, 1)), hash(i + vec3(1, 1, 1)), f.x), f.y),
     f.z);
+}
+/** A unit vector from the x and y of a map of normals. */
+vec3 unpacked(vec2 packed) {
+  vec2 flat2 = packed * 2.0 - 1.0;
+  return vec3(flat2, sqrt(max(0.0, 1.0 - dot(flat2, flat2))));
 }
 float pores(vec3 p) { return noise(p * 1.1) * 0.55 + noise(p * 2.3) * 0.45; }
 float stubble(vec3 p) { return noise(p * vec3(2.3, 1.1, 1.1)) * 0.6 + noise(p * vec3(4.1, 2.1, 2.1) + 40.0) * 0.4; }
@@ -85,13 +94,13 @@ skinOpen = 1.0 - 0.75 * mucosa;
 #ifdef SKIN_MAPS
   vec3 orm = texture2D(ormMap, vSkinUv).rgb;
   vec3 relief = texture2D(reliefMap, vSkinUv).xyz * 2.0 - 1.0;
-  vec3 creased = texture2D(wrinkleMap, vSkinUv).xyz * 2.0 - 1.0;
-  relief = mix(relief, creased, vWrinkle);
-  // A wrinkle's walls see less of the room than the skin around.
-  float depth = vWrinkle * saturate(2.0 * length(creased.xy));
-  skinOpen = mix(skinOpen, orm.r * (1.0 - 0.4 * depth), mapsShown);
+  vec3 furrows = texture2D(wrinkleMap, vSkinUv).xyz;
+  relief = mix(relief, unpacked(furrows.xy), vWrinkle);
+  // A wrinkle's floor sees less of the room than the skin around; its walls and rolls are shaded by their slant alone.
+  float depth = vWrinkle * (1.0 - furrows.z);
+  skinOpen = mix(skinOpen, orm.r * (1.0 - 0.55 * depth), mapsShown);
   diffuseColor.rgb = mix(diffuseColor.rgb, texture2D(albedoMap, vSkinUv).rgb, mapsShown);
-  diffuseColor.rgb *= 1.0 - mapsShown * depth * vec3(0.18, 0.28, 0.30);
+  diffuseColor.rgb *= 1.0 - mapsShown * depth * FURROW;
   roughnessFactor = mix(roughnessFactor, orm.g, mapsShown);
   // Under hair the scalp lies in its shadow: it neither shines nor lets light through.
   hairCover = max(hairCover, mapsShown * smoothstep(0.12, 0.5, vHair));
@@ -107,6 +116,7 @@ diffuseColor.a *= smoothstep(0.04, 0.96, intoLight);
 /** Pores without maps, by noise; with maps, the maps' relief and a tile of what is finer than they are. */
 const RELIEF = /* glsl */ `
 skinSmooth = normal;
+skinFolded = normal;
 if (mapsShown < 1.0) {
   vec3 at = vRest + 200.0;
   const float STEP = 0.25;
@@ -136,6 +146,12 @@ if (mapsShown < 1.0) {
   vec3 bitangent = downPerp * uvAcross.y + acrossPerp * uvDown.y;
   float longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
   float scale = longest == 0.0 ? 0.0 : inversesqrt(longest) * mapsShown;
+  // Folds broader than light travels under the skin shade it in every colour alike.
+  float texels = float(textureSize(wrinkleMap, 0).x);
+  float level = max(log2(texels * FOLD_BLUR * 0.001 / max(stretch, 1e-4)), textureLevel(texels * uvAcross, texels * uvDown));
+  vec3 fold = unpacked(textureLod(wrinkleMap, vSkinUv, level).xy);
+  vec2 bent = vWrinkle * fold.xy / max(fold.z, 0.2);
+  skinFolded = normalize(skinSmooth + scale * (tangent * bent.x - bitangent * bent.y));
   // A map's green points up, its rows count down.
   normal = normalize(normal + scale * (tangent * tilt.x - bitangent * tilt.y));
 }
@@ -152,6 +168,9 @@ material.specularF90 *= gloss;
 
 /** How often the tile of pores lies side by side on the map, and how steep its slopes are. */
 const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.6\n';
+
+/** What a furrow's floor keeps back of each colour, hardly more of blue; and how far red light blurs folds [mm]. */
+const FOLDS = '#define FURROW vec3(0.26, 0.30, 0.31)\n#define FOLD_BLUR 1.6\n';
 
 /** An open mouth draws its walls across the teeth, which no tissue holds off: what lies in it is drawn before them. */
 const BEHIND_TEETH = /* glsl */ `
@@ -199,7 +218,7 @@ vWrinkle = wrinkle;
     ['#include <project_vertex>', `#include <project_vertex>\n${BEHIND_TEETH}`],
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
-    ['#include <common>', `${TILES}#include <common>\n${NOISE}`],
+    ['#include <common>', `${TILES}${FOLDS}#include <common>\n${NOISE}`],
     ['#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>\n${PAINTED}`],
     ['#include <normal_fragment_maps>', `#include <normal_fragment_maps>\n${RELIEF}`],
     ['#include <lights_physical_fragment>', `#include <lights_physical_fragment>\n${GLOSS}`],

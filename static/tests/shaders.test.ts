@@ -33,6 +33,28 @@ describe('the skin s program', () => {
     expect(program.uniforms).toHaveProperty('poreMap');
   });
 
+  it('darkens the floors of furrows, not their walls, and shades broad folds in every colour', () => {
+    const program = physical();
+    const value = { value: null };
+    const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
+    makeSkin(program, { neckFade: value, mapsShown: value, poreMap: value, ...maps });
+    expect(program.fragmentShader).toContain('float depth = vWrinkle * (1.0 - furrows.z)');
+    expect(program.fragmentShader).toContain('vec3(dot(skinFolded, light)), BLUR');
+    const [red, green, blue] = /FURROW vec3\((.*?), (.*?), (.*?)\)/
+      .exec(program.fragmentShader)!
+      .slice(1)
+      .map(Number) as [number, number, number];
+    expect(Math.max(red, green, blue) - Math.min(red, green, blue)).toBeLessThan(0.08);
+  });
+
+  it('lets light from behind reach only edges that stand free', () => {
+    const program = physical();
+    const value = { value: null };
+    const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
+    makeSkin(program, { neckFade: value, mapsShown: value, poreMap: value, ...maps });
+    expect(program.fragmentShader).toMatch(/float edge = .*smoothstep\(0\.78, 0\.92, skinOpen\)/);
+  });
+
   it('draws the walls of the mouth behind what lies in it', () => {
     const program = physical();
     const value = { value: null };

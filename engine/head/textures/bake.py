@@ -16,7 +16,7 @@ from ..recipe import Recipe
 from .albedo import albedo
 from .occlusion import occlusion
 from .pigment import srgb
-from .relief import normals, relief
+from .relief import creases, normals, relief
 from .roughness import roughness
 from .texels import Texels
 from .zones import Surface, zones_of
@@ -62,7 +62,7 @@ def head_textures(
         "albedo.jpg": jpeg(fine.image(colors), ALBEDO_QUALITY),
         "normal.jpg": jpeg(normals(texels, rest), NORMAL_QUALITY),
         "orm.jpg": jpeg(texels.image((packed * 255 + 0.5).astype(np.uint8)), MAP_QUALITY),
-        "wrinkles.jpg": jpeg(normals(texels, wrinkled), NORMAL_QUALITY),
+        "wrinkles.jpg": jpeg(creases(texels, wrinkled, rest), NORMAL_QUALITY),
         "eye.jpg": jpeg(eye_texture(recipe), MAP_QUALITY),
     }
 

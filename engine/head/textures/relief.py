@@ -11,6 +11,7 @@ from dataclasses import fields
 import numpy as np
 import numpy.typing as npt
 from numba import njit
+from scipy.ndimage import gaussian_filter
 
 from ...arrays import Float32Array, FloatArray
 from ..noise import cell_edges, hashed, spot_noise, value_noise
@@ -22,6 +23,9 @@ OLD = (28.0, 75.0)
 """Ages between which lines stay when the face is at rest."""
 STAYING = 0.8
 """Share of a wrinkle's depth that stays on the oldest face."""
+SHADED = ((1.5, 0.6), (4.5, 1.8))
+"""A furrow is what lies lower than the skin about so far around it, and gets none of the light from
+all around where it is so much lower [mm]; narrow ones, and what lies at the foot of broad rolls."""
 
 _ZONES = ("lip", "beard", "pores", "front", "mouth", "violet", "scalp", "nostril")
 
@@ -47,6 +51,27 @@ def relief(
     age = float(np.clip((recipe.age - OLD[0]) / (OLD[1] - OLD[0]), 0, 1))
     rest = fine + STAYING * age**1.2 * folds
     return rest, np.asarray(fine + np.float32(1.05 + 0.3 * age) * folds)
+
+
+def creases(texels: Texels, heights: Float32Array, rest: Float32Array) -> npt.NDArray[np.uint8]:
+    """Return a relief's normals with, for blue, how open its furrows are; 8 bits, (s, s, 3).
+
+    Blue is 255 where the skin does not fold, and less the deeper a point lies in a furrow: a
+    wrinkle's floor sees less light, its walls and the rolls beside it see as much as before.
+
+    Args:
+        texels: Where they lie.
+        heights: With every wrinkle formed [mm], shape (n,).
+        rest: At rest [mm], shape (n,).
+    """
+    found = normals(texels, heights)
+    formed = texels.image(heights - rest).astype(np.float32)
+    width = float(np.median(texels.width))
+    hollow = np.zeros_like(formed)
+    for around, dark in SHADED:
+        hollow += np.maximum(gaussian_filter(formed, around / width) - formed, 0) / dark
+    found[:, :, 2] = (255.5 - 255 * np.clip(hollow, 0, 1)).astype(np.uint8)
+    return found
 
 
 def normals(texels: Texels, heights: Float32Array) -> npt.NDArray[np.uint8]:
