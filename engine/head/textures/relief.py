@@ -136,6 +136,61 @@ def _crease(gap: float, width: float) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
+def _rolls(gap: float, spacing: float, width: float) -> float:
+    """Return the profile of a furrow between soft rolls, each as broad as furrows lie apart.
+
+    Args:
+        gap: Distance from the furrow [mm].
+        spacing: From furrow to furrow [mm]; halfway the roll is highest, and the profile ends.
+        width: Of the furrow's floor [mm].
+    """
+    turn = np.pi * gap / spacing
+    if abs(turn) > np.pi / 2:
+        return 0.0
+    round_floor = np.pi * width / spacing
+    fall = np.sqrt(np.sin(turn) ** 2 + round_floor**2) - round_floor
+    whole = np.sqrt(1 + round_floor**2) - round_floor
+    return float(0.8 * (1 - fall / whole) + 0.2 * np.exp(-((gap / width) ** 2)))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def cheek_step(gap: float) -> tuple[float, float]:
+    """Return the fold beside the mouth: the cheek's roll over the lip's side, and the valley.
+
+    Args:
+        gap: Distance from the fold [mm], towards the cheek.
+
+    Returns:
+        Height of the roll, 0 on the lip and 1 at its crest, and depth of the valley, 0..1.
+    """
+    roll = _ramp(-1.2, 4.8, gap) * np.exp(-((max(gap - 3.6, 0.0) / 5.6) ** 2))
+    width = 0.9 if gap > 0 else 2.0
+    return float(roll), float(np.exp(-((gap / width) ** 2)))
+
+
+@njit(cache=True, nogil=True)
+def dimples(x: float, y: float, z: float, seed: int) -> float:
+    """Return how deep a point lies in scattered shallow pits: 0 between, about 1 in a deep one.
+
+    Lengths are in units of the pits' spacing. Pits have no rim, and differ in size and depth.
+    """
+    i, j, k = int(np.floor(x)), int(np.floor(y)), int(np.floor(z))
+    depth = 0.0
+    for di in range(-1, 2):
+        for dj in range(-1, 2):
+            for dk in range(-1, 2):
+                a, b, c = i + di, j + dj, k + dk
+                dx = a + 0.15 + 0.7 * hashed(a, b, c, seed + 2) - x
+                dy = b + 0.15 + 0.7 * hashed(a, b, c, seed + 3) - y
+                dz = c + 0.15 + 0.7 * hashed(a, b, c, seed + 4) - z
+                radius = 0.28 + 0.16 * hashed(a, b, c, seed + 1)
+                share = 0.35 + 0.65 * hashed(a, b, c, seed)
+                away = (dx * dx + dy * dy + dz * dz) / (radius * radius)
+                depth += share * np.exp(-away)
+    return float(depth)
+
+
+@njit(cache=True, nogil=True, inline="always")
 def _ramp(low: float, high: float, value: float) -> float:
     share = min(max((value - low) / (high - low), 0.0), 1.0)
     return share * share * (3 - 2 * share)
@@ -164,7 +219,8 @@ def _along(x: float, y: float, curve: FloatArray) -> tuple[float, float]:
 
 
 _NASOLABIAL = np.array([
-    [18.5, -37.0], [22.0, -44.0], [26.5, -52.0], [31.0, -60.0], [34.5, -69.0], [35.5, -78.0],
+    [16.4, -31.0], [18.5, -37.0], [22.0, -44.0], [26.5, -52.0], [31.0, -60.0], [34.5, -69.0],
+    [35.5, -78.0],
 ])  # fmt: skip
 _MARIONETTE = np.array([[30.0, -74.0], [32.0, -82.0], [33.0, -91.0], [32.0, -99.0]])
 _MENTOLABIAL = np.array([[0.0, -91.0], [8.0, -90.5], [16.0, -89.0], [22.0, -86.5]])
@@ -191,17 +247,18 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         mask = _spot(x, y, 0.0, 46.0, 56.0, 26.0)
         if mask > 0.01:
             rise = y - 2.6 * np.sin((x - 8.0) / 17.0) + 0.5 * w6
-            for k in range(6):
-                line = 26.0 + 8.3 * k + 4.0 * hashed(k, 1, 0, seed)
-                gap = rise - line - 2.0 * value_noise(side / 21, 3.1 * k, 0.5, seed + 63)
+            rise -= 1.6 * value_noise(side / 24, 3.1, 0.5, seed + 63)
+            for k in range(5):
+                line = 26.0 + 8.8 * k + 2.0 * hashed(k, 1, 0, seed)
+                gap = rise - line - 0.9 * value_noise(side / 17, 3.1 * k, 0.5, seed + 63)
                 if abs(gap) > 9:
                     continue
                 whole = 0.62 + 0.95 * value_noise(side / 24, 5.3 * k, 1.5, seed + 64)
-                whole = min(max(whole, 0.0), 1.0) * (0.6 + 0.4 * hashed(k, 2, 0, seed))
+                whole = min(max(whole, 0.0), 1.0) * (0.65 + 0.35 * hashed(k, 2, 0, seed))
                 fork = 3.4 * value_noise(side / 17, 7.7 * k, 2.5, seed + 75)
-                depth += mask * 0.75 * whole * _crease(gap, 0.75)
+                depth += mask * 0.95 * whole * _rolls(gap, 9.4, 0.55)
                 if fork > 0.2:
-                    depth += mask * 0.30 * min(whole, fork) * _crease(gap - fork, 0.42)
+                    depth += mask * 0.14 * min(whole, fork) * _crease(gap - fork, 0.42)
         # Glabella: upright lines between the brows, one deeper than the other, and lesser ones.
         mask = _spot(x, y, 0.0, 17.0, 15.0, 17.0)
         if mask > 0.01:
@@ -239,9 +296,9 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
                 gap = (angle - aim) * reach + 0.5 * w6 + 0.2 * w2
                 if abs(gap) > 6:
                     continue
-                long = 13.0 + 11.0 * other - 1.2 * abs(k - 2.5)
-                fan = _ramp(3.5 + 2 * own, 8.0 + 2 * own, reach) * np.exp(-((reach / long) ** 4))
-                share = 0.36 + 0.32 * own
+                long = 18.0 + 11.0 * other - 1.2 * abs(k - 2.5)
+                fan = _ramp(4.5 + 2 * own, 10.0 + 2 * own, reach) * np.exp(-((reach / long) ** 4))
+                share = 0.42 + 0.34 * own
                 depth += fan * share * _crease(gap, 0.46 + 0.012 * reach)
                 if other > 0.45:
                     fork = 0.30 * max(reach - 10.0, 0.0) * (1 if own > 0.5 else -1)
@@ -253,24 +310,24 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
             follow = y + 0.012 * (x - 31.0) ** 2 + 0.25 * w6
             lines = value_noise(side / 17 + 0.08 * w2, follow / 2.6, z / 60, seed + 70)
             depth += mask * 0.24 * _groove(lines, 2.6, 0.42)
+        # The bag that a raised cheek pushes up below them, and the crease at its foot.
+        mask = _spot(x, y, 32.0, -11.0, 15.0, 11.0)
+        if mask > 0.01:
+            below = 10.2 - 0.014 * (x - 31.0) ** 2 + y + 0.3 * w6
+            foot = _ramp(15.0, 27.0, x) * np.exp(-(((below + 4.8) / 1.1) ** 2))
+            depth += mask * (0.3 * foot - 0.55 * np.exp(-((below / 3.2) ** 2)))
         gap, share = _along(x, y, _TEAR)
         depth += 0.16 * np.exp(-((gap / 1.7) ** 2)) * np.sin(np.pi * min(max(share, 0.0), 1.0))
         # Fold from nose to mouth, the corner's line below it, and lines beside both.
         gap, share = _along(x, y, _NASOLABIAL)
-        if abs(gap) < 12:
-            gap += 0.35 * w6
-            ends = np.sin(np.pi * min(max(share * 0.92 + 0.08, 0.0), 1.0)) ** 0.6
-            depth += (
-                0.85
-                * ends
-                * (
-                    np.exp(-((gap / 1.15) ** 2))
-                    + 0.4 * np.exp(-((gap / 3.4) ** 2))
-                    - 0.35 * np.exp(-(((gap - 3.0) / 2.0) ** 2))
-                )
-            )
-            beside = gap + 3.6 + 1.6 * hashed(left, 9, 0, seed) + 3.0 * (share - 0.8)
-            depth += 0.30 * _ramp(0.35, 0.75, share) * ends * _crease(beside, 0.6)
+        if abs(gap) < 16:
+            gap += 0.6 * w6 + 0.12 * w2
+            whole = _ramp(0.0, 0.2, share) * _ramp(1.0, 0.5, share) * (1 - 0.4 * share)
+            roll, valley = cheek_step(gap)
+            uneven = 0.75 + 0.45 * value_noise(5 * share, left, 0.5, seed + 78)
+            depth += whole * (0.65 * uneven * valley - 1.9 * roll)
+            beside = gap - 5.5 - 1.6 * hashed(left, 9, 0, seed) - 3.0 * (share - 0.8)
+            depth += 0.14 * _ramp(0.4, 0.7, share) * _ramp(1.0, 0.8, share) * _crease(beside, 0.6)
         gap, share = _along(x, y, _MARIONETTE)
         depth += 0.4 * np.exp(-(((gap + 0.3 * w6) / 1.0) ** 2)) * np.sin(np.pi * share) ** 0.7
         # Chin: the fold above it, and the dimples of a knotted mentalis.
@@ -278,8 +335,9 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         depth += 0.45 * np.exp(-(((gap + 0.3 * w6) / 1.5) ** 2)) * (1 - share) ** 0.5
         mask = _spot(x, y, 0.0, -103.0, 17.0, 11.0)
         if mask > 0.01:
-            knot = value_noise(side / 4.8, y / 3.9, z / 6.0, seed + 72) + 0.35 * w2
-            depth += mask * (0.55 * _ramp(-0.1, 0.8, knot) - 0.1)
+            sway = 0.12 * w2
+            knot = dimples(side / 3.3 + sway, y / 3.3 + sway, z / 3.3, seed + 72)
+            depth += mask * (0.58 * knot * (0.85 + 0.3 * w6) - 0.15 * w6)
         # Lines that purse the lips.
         if lip_depth < 0.5 and x < 26:
             mask = np.exp(-(((lip_depth + 2.5) / 3.2) ** 2)) * (1 - (x / 27) ** 4)

@@ -17,7 +17,7 @@ from engine.head import Head, Recipe
 from engine.head.recipe import SKIN_TONES, STANDARD
 from engine.head.textures import TEXTURE_NAMES, head_textures
 from engine.head.textures.albedo import albedo
-from engine.head.textures.relief import relief
+from engine.head.textures.relief import cheek_step, creases, dimples, relief
 from engine.head.textures.texels import Texels
 from engine.head.textures.zones import Surface, Zones, zones_of
 from engine.rig import Rig
@@ -89,3 +89,68 @@ def test_relief_is_as_deep_as_skin(head: Head, skin: tuple[Texels, Zones]) -> No
     assert 0.02 < rest.std() < 0.12  # mm
     assert -0.5 < rest.min()
     assert -2.0 < wrinkled.min() < -0.5
+
+
+def test_fold_beside_the_mouth_is_a_step_of_the_cheek() -> None:
+    gaps = np.linspace(-12, 14, 261)
+    roll, valley = np.array([cheek_step(gap) for gap in gaps]).T
+    heights = roll - 0.35 * valley
+    crest, floor = gaps[heights.argmax()], gaps[heights.argmin()]
+    assert 2 < crest < 6  # mm, on the cheek's side
+    assert -2 < floor < 0.5
+    assert np.abs(heights[gaps < -5]).max() < 0.02  # nothing stands on the lip's side
+    shaded = gaps[heights > 0.1]
+    assert shaded.max() - shaded.min() > 8
+    assert (np.diff(heights[(gaps > floor) & (gaps < crest)]) > 0).all()  # one step, no ridges
+
+
+def test_knotted_chin_has_pits_and_no_bumps() -> None:
+    side = np.linspace(0, 20, 200)
+    depth = np.array([[dimples(x, y, 0.5, 7) for x in side] for y in side])
+    assert depth.min() >= 0
+    # Most of the skin is plain and pits lie in it, not the other way about.
+    assert np.median(depth) < depth.mean() < 0.5 * depth.max()
+    inside = depth[1:-1, 1:-1]
+    rims = [depth[1 + j : 199 + j, 1 + i : 199 + i] for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    pits = (inside >= np.max(rims, axis=0)) & (inside > 0.15)
+    assert 1.0 < np.sqrt(side[-1] ** 2 / pits.sum()) < 1.6  # spacings between pits
+    assert depth[1:-1, 1:-1][pits].std() > 0.1
+
+
+def test_floors_of_furrows_are_dark_and_walls_are_not(head: Head) -> None:
+    drawn = head.drawn
+    texels = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, 1024)
+    places = texels.carried(drawn.reference)
+    rest = np.zeros(len(places), dtype=np.float32)
+    # Furrows across the forehead, 9 mm apart.
+    heights = (-0.7 * np.exp(-((((places[:, 1] + 4.5) % 9 - 4.5) / 1.0) ** 2))).astype(np.float32)
+    found = creases(texels, heights, rest)[texels.rows, texels.columns]
+    there = (np.abs(places[:, 0]) < 20) & (np.abs(places[:, 1] - 45) < 12) & (places[:, 2] > 60)
+    off = np.abs((places[:, 1] + 4.5) % 9 - 4.5)
+    floor, flank = found[there & (off < 0.3), 2], found[there & (off > 2.0), 2]
+    assert np.median(floor) < 130
+    assert np.median(flank) > 245
+    still = creases(texels, rest, rest)[texels.rows, texels.columns]
+    assert still[:, 2].min() == 255
+
+
+def test_rolls_of_the_forehead_are_broad(head: Head) -> None:
+    drawn = head.drawn
+    texels = Texels.of(drawn.uvs, drawn.triangles, drawn.vertices, 1024)
+    rest, wrinkled = relief(
+        texels, zones_of(Surface.of(drawn), STANDARD), drawn.reference, STANDARD
+    )
+    places, folds = texels.carried(drawn.reference), wrinkled - rest
+    there = (np.abs(places[:, 0] - 6) < 0.6) & (places[:, 1] > 28) & (places[:, 1] < 64)
+    there &= places[:, 2] > 60
+    order = np.argsort(places[there, 1])
+    y, height = places[there, 1][order], folds[there][order]
+    steps = np.arange(28, 64, 0.5)
+    profile = np.array([height[np.abs(y - step) < 0.4].mean() for step in steps])
+    inner = profile[1:-1]
+    floors = steps[1:-1][(inner < profile[:-2]) & (inner <= profile[2:]) & (inner < -0.05)]
+    assert len(floors) >= 3
+    assert 7 < np.diff(floors).min()  # mm from furrow to furrow
+    assert np.diff(floors).max() < 12
+    sloping = np.abs(np.gradient(profile, steps)) > 0.03
+    assert sloping.mean() > 0.5  # most of the skin belongs to a roll, not to plain skin
