@@ -69,17 +69,17 @@ SITES = {
 }
 
 GAUGES = (
-    Gauge("forehead", "G4_0", "G2_0", 10.5, slack=0.016, column=0),
-    Gauge("forehead", "G4_2.L", "G2_1.L", 10.5, slack=0.016, column=14),
-    Gauge("forehead", "G4_3.L", "G2_3.L", 13.0, slack=0.014, column=27),
-    Gauge("forehead", "G4_5.L", "G2_5.L", 20.5, slack=0.021, column=41),
-    Gauge("forehead", "T1_6.L", "G2_7.L", 12.0, slack=0.02, column=56),
+    Gauge("forehead", "G4_0", "G2_0", 10.5, slack=0.037, column=0),
+    Gauge("forehead", "G4_2.L", "G2_1.L", 10.5, slack=0.03, column=14),
+    Gauge("forehead", "G4_3.L", "G2_3.L", 13.0, slack=0.024, column=27),
+    Gauge("forehead", "G4_5.L", "G2_5.L", 20.5, slack=0.05, column=41),
+    Gauge("forehead", "T1_6.L", "G2_7.L", 12.0, slack=0.034, column=56),
     Gauge("glabella", "b1_2.L", "b1_2.R", 9.2, slack=0.013),
     Gauge("nasal_root", "b1_0", "b3_0", 17.0, slack=0.045),
     Gauge("nose_side", "C4_1.L", "A7.L", 16.0, slack=0.021),
     Gauge("crows_feet", "C8_1.L", "E2_8.L", 15.0, slack=0.015, weight=0.5),
     Gauge("crows_feet", "E4_9.L", "E4_6.L", 18.0, slack=0.016, weight=0.5),
-    Gauge("lower_lid", "EB_15.L", "E4_12.L", 7.5, slack=0.035),
+    Gauge("lower_lid", "E1_11.L", "E3_11.L", 6.0, slack=0.04),
     Gauge("nasolabial", "M4_4.L", "C4_3.L", 5.6, slack=0.017),
     Gauge("nasolabial_upper", "E3_15.L", "A6.L", 13.0, slack=0.009, weight=0.8),
     Gauge("chin", "M4_10", "M0_2.L", 11.5, slack=0.05),

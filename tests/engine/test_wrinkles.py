@@ -70,6 +70,16 @@ def test_units_press_their_sites(standard_rig: Rig, wrinkles: Wrinkles, unit: st
             assert value < SMOOTH, (unit, strength)
 
 
+def test_smile_that_narrows_the_eyes_bags_the_lower_lids(
+    standard_rig: Rig, wrinkles: Wrinkles
+) -> None:
+    smile = Keyframe(action_units={"AU6": 1.0, "AU12": 1.0, "AU25": 1.0}, fade=0.15)
+    frame = settled(standard_rig, [smile])[0]
+    strength = at_places(standard_rig, wrinkles(standard_rig.head.points + frame.displacements))
+    for site in ("lower_lid", "crows_feet", "nasolabial"):
+        assert strength[site] > FORMED, strength
+
+
 def test_paper_has_none(paper_rig: Rig) -> None:
     assert wrinkles_of(paper_rig.head) is None
 
