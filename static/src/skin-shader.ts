@@ -146,7 +146,7 @@ if (mapsShown < 1.0) {
   vec3 bitangent = downPerp * uvAcross.y + acrossPerp * uvDown.y;
   float longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
   float scale = longest == 0.0 ? 0.0 : inversesqrt(longest) * mapsShown;
-  // Folds broader than light travels under the skin shade it in every colour alike.
+  // Folds shade the skin in every colour alike; only what is finer is blurred by light that travels under it.
   float texels = float(textureSize(wrinkleMap, 0).x);
   float level = max(log2(texels * FOLD_BLUR * 0.001 / max(stretch, 1e-4)), textureLevel(texels * uvAcross, texels * uvDown));
   vec3 fold = unpacked(textureLod(wrinkleMap, vSkinUv, level).xy);
@@ -169,8 +169,8 @@ material.specularF90 *= gloss;
 /** How often the tile of pores lies side by side on the map, and how steep its slopes are. */
 const TILES = '#define PORE_TILES 26.0\n#define PORE_DEPTH 0.6\n';
 
-/** What a furrow's floor keeps back of each colour, hardly more of blue; and how far red light blurs folds [mm]. */
-const FOLDS = '#define FURROW vec3(0.26, 0.30, 0.31)\n#define FOLD_BLUR 1.6\n';
+/** What a furrow's floor keeps back of each colour, hardly more of blue; and what is finer than a fold [mm]. */
+const FOLDS = '#define FURROW vec3(0.26, 0.30, 0.31)\n#define FOLD_BLUR 0.9\n';
 
 /** An open mouth draws its walls across the teeth, which no tissue holds off: what lies in it is drawn before them. */
 const BEHIND_TEETH = /* glsl */ `
