@@ -103,7 +103,7 @@ class TissueParameters:
     anchor_excess_distance: float = 5.0
     skull_stiffness: float = 5.0
     skull_gap: float = 1.5
-    damping: float = 31.0
+    damping: float = 30.0
     mass_frequency: float = 750.0
     activation_lag: float = 0.040
     lid_lag: float = 0.010

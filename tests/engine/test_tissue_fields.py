@@ -8,8 +8,8 @@ import pytest
 from engine import InvalidValue, Keyframe, UnknownName, settled
 from engine.tissue import TissueParameters, assemble
 from engine.tissue.fields import fields_of
-from engine.tissue.places import region_share
 from engine.tissue.layers import sheet_of
+from engine.tissue.places import region_share
 
 
 def edited(**changes):
