@@ -136,6 +136,10 @@ def test_the_examples_about_tissue_make_rigs(client: TestClient) -> None:
 def test_the_example_of_the_inverse_is_answered(client: TestClient) -> None:
     (example,) = sent_in("api.md", "/api/rigs/standard/inverse")
     answer = client.post("/api/rigs/standard/inverse", json=json.loads(example))
+    for _ in range(9):  # on a busy machine the rig's response takes more than the minute waited for
+        if answer.status_code != 503:
+            break
+        answer = client.post("/api/rigs/standard/inverse", json=json.loads(example))
     assert answer.status_code == 200, answer.text
     api = (DOCS / "api.md").read_text(encoding="utf-8")
     shown = re.search(r'```json\n(\{"rig": "…", "activations".*?)```', api, re.S)
