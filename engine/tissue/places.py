@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..head import Head
 from .layers import Sheet
 
@@ -48,12 +48,12 @@ def tautness(sheet: Sheet) -> FloatArray:
     return _greatest(sheet, TAUT)
 
 
-def firmness(sheet: Sheet, corners: np.ndarray) -> FloatArray:
+def firmness(sheet: Sheet, corners: IntArray) -> FloatArray:
     """Return the factor on the volume modulus of elements over `corners` (e, 3), shape (e,)."""
     return np.asarray(_greatest(sheet, FIRM)[corners].max(axis=1))
 
 
-def stubbornness(head: Head, sheet: Sheet, corners: np.ndarray) -> FloatArray:
+def stubbornness(head: Head, sheet: Sheet, corners: IntArray) -> FloatArray:
     """Return the factor on what resists pressing elements over `corners` (e, 3) flat, (e,)."""
     by_region = _greatest(sheet, STUBBORN)[corners].max(axis=1)
     names = [name.partition(".")[0] for name in head.names[: head.sheet_count]]

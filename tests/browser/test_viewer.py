@@ -168,7 +168,9 @@ def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> 
             assert before["x"] + before["width"] <= box["x"]
             assert box["x"] + box["width"] <= stage["x"] + stage["width"]
             assert box["y"] + box["height"] <= height
-        assert page.locator("footer").bounding_box()["y"] < height - 30  # type: ignore[index]
+        footer = page.locator("footer").bounding_box()
+        assert footer is not None
+        assert footer["y"] < height - 30
 
 
 def test_sliders_show_what_an_emotion_plays(page: playwright_api.Page, url: str) -> None:
