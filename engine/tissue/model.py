@@ -105,7 +105,8 @@ def assemble(head: Head, parameters: TissueParameters, *, literal_springs: bool)
     anchors = _anchors(head, parameters, scale * fields.ties)
     prisms = _prisms(head, sheet, layers, parameters)
     elements = prism_stiffness(layers, prisms)
-    pressed = prism_stiffness(layers, prisms, pressed=True)
+    stubborn = stubbornness(head, sheet, prisms.corners.astype(int) % head.sheet_count)
+    pressed = prism_stiffness(layers, prisms, stubborn)
     plate = _plate(sheet, parameters, scale)
     pressure = _pressure(head, sheet, layers, parameters)
     node_count = 3 * head.sheet_count
@@ -301,23 +302,28 @@ def _prisms(head: Head, sheet: Sheet, layers: Layers, p: TissueParameters) -> Pr
     )
 
 
-def prism_stiffness(layers: Layers, prisms: Prisms, *, pressed: bool = False) -> FloatArray:
+def prism_stiffness(
+    layers: Layers, prisms: Prisms, stubborn: FloatArray | None = None
+) -> FloatArray:
     """Return each node's share D_i of the elements' stiffness, shape (nodes,).
 
-    Half of the row sum of k ∇V ∇Vᵀ / V0², at rest or where the element is `pressed` as far as
-    faces press it: thick ones to `PRESSED`, thin ones, in the corners of the lips, through.
+    Half of the row sum of k ∇V ∇Vᵀ / V0², at rest or, where it is told how `stubborn` each element
+    is, shape (e,), pressed as far as faces press it: thick ones to `PRESSED`, thin ones, in the
+    corners of the lips, through, and stubborn ones less deep. What resists grows with the square
+    of the depth, so that the same force presses an element s times as stubborn 1/√s as deep.
     """
     total = np.zeros(len(layers.nodes))
     if not len(prisms.corners):
         return total
     size = np.linalg.norm(volume_gradients(layers.nodes, prisms.corners), axis=2)
     stiffness = prisms.stiffness / prisms.volume**2
-    if pressed:
+    if stubborn is not None:
         corners = prisms.corners
         n = len(layers.normals)
         height = np.linalg.norm(layers.nodes[corners] - layers.nodes[corners + n], axis=2).mean(1)
         share = np.where(height < THIN_MM, PRESSED_THIN, PRESSED)
-        stiffness = stiffness * (1.0 + 2.0 * prisms.order * np.maximum(prisms.least - share, 0.0))
+        deep = np.maximum(prisms.least - share, 0.0) / np.sqrt(stubborn)
+        stiffness = stiffness * (1.0 + 2.0 * prisms.order * deep)
     stiff = stiffness[:, None] * size * size.sum(axis=1, keepdims=True)
     nodes = np.concatenate([prisms.corners, prisms.corners + len(layers.normals)], axis=1)
     np.add.at(total, nodes.ravel(), 0.5 * stiff.ravel())

@@ -75,6 +75,12 @@ def test_random_mixes_hold_their_layers(standard_rig):
     assert [f.through for f in mixed if f.through] == []
 
 
+def test_the_corner_of_the_lips_does_not_turn_over(standard_rig):
+    """Tightened lips drawn back and down press its elements the most of 500 mixes."""
+    units = {"AU10": 0.58, "AU15": 0.66, "AU20": 0.6, "AU23": 0.73, "AU29": 0.33}
+    assert examine(standard_rig, [Keyframe(action_units=units)])[0].inverted == 0
+
+
 def test_mixes_are_seeded(standard_rig):
     one, other = (random_mixes(standard_rig, 5, seed) for seed in (3, 4))
     assert one == random_mixes(standard_rig, 5, 3)
