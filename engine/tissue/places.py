@@ -29,13 +29,13 @@ Over the platysma: with as little tension as the rest a wide open mouth comes to
 shapes, 9 mm apart. Over the galea: a raised brow pushes the middle of the forehead 3 mm aside, to
 the left or to the right after what went before.
 """
-FIRM: Mapping[str, float] = {"submental": 1.6, "neck": 1.6}
+FIRM: Mapping[str, float] = {"submental": 1.9, "neck": 1.9}
 """Factor on the volume modulus: a wide open jaw pushes the skin under the chin together."""
 STUBBORN: Mapping[str, float] = {"upper_lip_inner": 1.6}
 """Factor on the resistance to being pressed flat: these elements are the thinnest, and are
 stretched over the teeth by every smile."""
 STUBBORN_POINTS: Mapping[str, float] = {
-    **dict.fromkeys(("M0_5", "M0_6", "M1_6"), 3.2),  # the corner of the lips
+    **dict.fromkeys(("M0_4", "M0_5", "M0_6", "M1_4", "M1_5", "M1_6"), 3.2),  # corner of the lips
     **dict.fromkeys(("E1_8", "E2_8", "E2_9"), 3.2),  # the outer corner of the eye
 }
 """The same for elements between such points, where skin turns sharply."""
