@@ -50,11 +50,13 @@ TABLEAUS: dict[str, FloatArray] = {
     "heun": np.array([[1.0, 0.5], [0.0, 0.5]]),
     "rk4": np.array([[0.5, 1 / 6], [0.5, 1 / 3], [1.0, 1 / 3], [0.0, 1 / 6]]),
     "symplectic_euler": np.zeros((0, 2)),
+    "verlet": np.zeros((0, 1)),
 }
 """Integrators by name. A row is a stage of explicit Runge-Kutta: how far ahead of the step's start
 the next stage stands, and this stage's share of the step. "rk2" is the midpoint form: the paper's
 second-order Runge-Kutta (section 6), the default and the reference. Symplectic Euler, velocity
-first, then position with the new velocity, has no rows."""
+first, then position with the new velocity, has no rows; neither has position Verlet, whose forces
+are taken half way through the step: it is told from the other by its one column."""
 
 
 class Springs(NamedTuple):
@@ -197,12 +199,14 @@ class Skull(NamedTuple):
         bone: Foot of each pressure column.
         normals: Outward normals of the skull.
         load: Dead load, with the muscles' forces in mode "rest" added, shape (3, nodes).
+        travel: How far the targets go, evenly, in the tick at whose end they are where they are.
     """
 
     targets: FloatArray
     bone: FloatArray
     normals: FloatArray
     load: FloatArray
+    travel: FloatArray
 
 
 class Pull(NamedTuple):
@@ -310,17 +314,21 @@ def add_spring_forces(
 
 @kernel
 def add_anchor_forces(
-    x: FloatArray, anchors: Anchors, targets: FloatArray, normals: FloatArray, force: FloatArray
+    x: FloatArray, anchors: Anchors, skull: Skull, behind: float, force: FloatArray
 ) -> None:
     """Add the skull's hold on the hypodermis to `force`.
 
-    Elastic ties, stiffer when overstretched, and a one-sided wall where the skull begins.
+    Elastic ties, stiffer when overstretched, and a one-sided wall where the skull begins; the
+    targets are the share `behind` of their travel short of where they will be.
     """
+    targets, normals, travel = skull.targets, skull.normals, skull.travel
     n = targets.shape[1]
     base = x.shape[1] - n
     for a in range(n):
         i = base + a
-        ux, uy, uz = targets[0, a] - x[0, i], targets[1, a] - x[1, i], targets[2, a] - x[2, i]
+        ux = targets[0, a] - behind * travel[0, a] - x[0, i]
+        uy = targets[1, a] - behind * travel[1, a] - x[1, i]
+        uz = targets[2, a] - behind * travel[2, a] - x[2, i]
         nx, ny, nz = normals[0, a], normals[1, a], normals[2, a]
         depth = ux * nx + uy * ny + uz * nz
         along = anchors.tangential[a]
@@ -611,12 +619,21 @@ def add_basis_forces(
 
 @kernel
 def static_forces(
-    x: FloatArray, tissue: Tissue, skull: Skull, pull: Pull, scratch: Scratch, force: FloatArray
+    x: FloatArray,
+    tissue: Tissue,
+    skull: Skull,
+    pull: Pull,
+    scratch: Scratch,
+    force: FloatArray,
+    behind: float = 0.0,
 ) -> None:
-    """Set `force` to f - Q of Eq. 21: everything that acts on the nodes but damping."""
+    """Set `force` to f - Q of Eq. 21: everything that acts on the nodes but damping.
+
+    `behind` is the share of the tick that is still to come.
+    """
     force[:] = skull.load
     add_spring_forces(x, tissue.springs, scratch.tension, force)
-    add_anchor_forces(x, tissue.anchors, skull.targets, skull.normals, force)
+    add_anchor_forces(x, tissue.anchors, skull, behind, force)
     if tissue.prisms.corners.shape[0] > 0:
         add_prism_forces(x, tissue.prisms, scratch.terms, force)
     if tissue.plate.values.shape[0] > 0:
@@ -636,9 +653,10 @@ def accelerations(
     pull: Pull,
     scratch: Scratch,
     out: FloatArray,
+    behind: float,
 ) -> None:
     """Set `out` to ẍ = M⁻¹ (f - Q) - c ẋ (Eqs. 21-22); fixed nodes have inverse mass 0."""
-    static_forces(x, tissue, skull, pull, scratch, out)
+    static_forces(x, tissue, skull, pull, scratch, out, behind)
     damping = tissue.damping
     for c in range(3):
         for i in range(x.shape[1]):
@@ -750,6 +768,55 @@ def resolve_eyes(x: FloatArray, v: FloatArray, contacts: Contacts) -> None:
 
 
 @kernel
+def resolve_contacts(x: FloatArray, v: FloatArray, tissue: Tissue) -> None:
+    """Put back every node that has passed what it may not."""
+    resolve_lips(x, v, tissue.inverse_mass, tissue.contacts)
+    resolve_teeth(x, v, tissue.contacts)
+    resolve_eyes(x, v, tissue.contacts)
+
+
+@kernel
+def kick(v: FloatArray, force: FloatArray, tissue: Tissue, dt: float) -> None:
+    """Take `force` and damping into the velocities: v' - v = dt (f/m - c (v' + v)/2).
+
+    Nodes without mass are moved, not pushed: theirs stay.
+    """
+    half = 0.5 * dt * tissue.damping
+    keep, gain = (1.0 - half) / (1.0 + half), dt / (1.0 + half)
+    for c in range(3):
+        for i in range(v.shape[1]):
+            inverse = tissue.inverse_mass[i]
+            if inverse > 0.0:
+                v[c, i] = keep * v[c, i] + gain * inverse * force[c, i]
+
+
+@kernel
+def advance_verlet(
+    x: FloatArray,
+    v: FloatArray,
+    substeps: int,
+    dt: float,
+    tissue: Tissue,
+    skull: Skull,
+    pull: Pull,
+    work: Workspace,
+) -> None:
+    """Move one face by `substeps` steps of position Verlet: half a drift, a kick, half a drift.
+
+    Forces are taken once a step, half way. Two half drifts in a row are one, so that contact is
+    resolved where forces are taken, and once more at the end.
+    """
+    shift(x, x, v, 0.5 * dt)
+    resolve_contacts(x, v, tissue)
+    for step in range(substeps):
+        behind = 1.0 - (step + 0.5) / substeps
+        static_forces(x, tissue, skull, pull, work.scratch, work.force, behind)
+        kick(v, work.force, tissue, dt)
+        shift(x, x, v, 0.5 * dt if step == substeps - 1 else dt)
+        resolve_contacts(x, v, tissue)
+
+
+@kernel
 def advance(
     x: FloatArray,
     v: FloatArray,
@@ -763,18 +830,22 @@ def advance(
 ) -> None:
     """Move one face by `substeps` steps of `dt` seconds: integrate, then contact.
 
-    `x` and `v`, shape (3, nodes), are overwritten; `tableau` is one of `TABLEAUS`, where no rows
-    stand for symplectic Euler. Contact is resolved every substep, with the velocity mended too:
-    once a frame, lips chatter.
+    `x` and `v`, shape (3, nodes), are overwritten; `tableau` is one of `TABLEAUS`. Nodes without
+    mass go as their velocity says. Contact is resolved every substep, with the velocity mended
+    too: once a frame, lips chatter.
     """
+    if tableau.shape[1] == 1:
+        advance_verlet(x, v, substeps, dt, tissue, skull, pull, work)
+        return
     stages = tableau.shape[0]
-    for _ in range(substeps):
+    for step in range(substeps):
+        behind = 1.0 - (step + 0.5) / substeps
         work.x[:] = x
         work.v[:] = v
         work.slope_x[:] = 0.0
         work.slope_v[:] = 0.0
         for stage in range(max(stages, 1)):
-            accelerations(work.x, work.v, tissue, skull, pull, work.scratch, work.force)
+            accelerations(work.x, work.v, tissue, skull, pull, work.scratch, work.force, behind)
             if stages > 0:
                 ahead, share = tableau[stage, 0] * dt, tableau[stage, 1] * dt
                 runge_kutta_stage(x, v, ahead, share, work)
@@ -784,6 +855,4 @@ def advance(
         else:
             shift(v, v, work.force, dt)
             shift(x, x, v, dt)
-        resolve_lips(x, v, tissue.inverse_mass, tissue.contacts)
-        resolve_teeth(x, v, tissue.contacts)
-        resolve_eyes(x, v, tissue.contacts)
+        resolve_contacts(x, v, tissue)

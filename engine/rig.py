@@ -86,7 +86,8 @@ class Model:
     """Which of the declared forms of the physics a face runs.
 
     Attributes:
-        integrator: "rk2" (midpoint), "heun", "symplectic_euler" or "rk4".
+        integrator: "rk2" (midpoint, the paper's), "heun", "symplectic_euler", "rk4" or "verlet",
+            which moves sixteen faces at once: `engine.lanes`.
         forces: "rest" (weights from the rest pose) or "current" (from the moving skin).
         springs: "continuous" or "literal" (Eq. 20 as printed).
         sphincter: "ring" or "literal" (Eq. 11 as printed).
@@ -114,7 +115,7 @@ class Model:
 
 
 MODEL_CHOICES: Mapping[str, tuple[str, ...]] = {
-    "integrator": ("rk2", "heun", "symplectic_euler", "rk4"),
+    "integrator": ("rk2", "heun", "symplectic_euler", "rk4", "verlet"),
     "forces": ("rest", "current"),
     "springs": ("continuous", "literal"),
     "sphincter": ("ring", "literal"),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import FloatArray, IntArray
 from .assembly import Assembly, compile_rig
 from .channels import GROUPS
 from .dynamics import Pull, Skull, Workspace, add_basis_forces, advance, workspace
@@ -109,6 +109,7 @@ class Simulator:
         self.model = model or rig.model
         self.assembly: Assembly = compile_rig(rig, self.model, substeps)
         self._faces: dict[str, FaceState] = {}
+        self._still = np.zeros((3, self.assembly.tissue.node_count))
         count = threads or os.cpu_count() or 1
         self._pool = ThreadPoolExecutor(count) if count > 1 else None
 
@@ -134,7 +135,7 @@ class Simulator:
             if state.x.shape != self.assembly.tissue.arrays.rest.shape:
                 raise InvalidValue("the state belongs to a head with another number of nodes")
             state.mixer = state.mixer.moved_to(self.rig, state.tick)
-            state.posed, state.skull, state.work = None, None, None
+            state.posed, state.work = None, None
             state.asleep, state.still_ticks = False, 0
         self._faces[face] = state
 
@@ -204,16 +205,17 @@ class Simulator:
             UnknownName: If there is no such face.
         """
         state = self._face(face)
-        if state.skull is None:
-            self._pose(state)
-        assert state.skull is not None
+        skull = state.skull
+        if skull is None:
+            rigid = self._rigid_signals(state)
+            skull = pose_skull(self.rig, self.assembly.tissue, list(rigid[:3]), rigid[3:])
         return Snapshot(
             assembly=self.assembly,
             tick=state.tick,
             x=state.x.copy(),
             v=state.v.copy(),
             signals=state.signals.copy(),
-            skull=state.skull,
+            skull=skull,
             frame=self._frame(state),
         )
 
@@ -234,7 +236,7 @@ class Simulator:
     def _step_face(self, state: FaceState) -> None:
         state.diverged = False
         self._lag(state)
-        self._pose(state)
+        carried = self._pose(state)
         skull, pull = self._forces(state)
         assembly = self.assembly
         if state.work is None:
@@ -250,6 +252,9 @@ class Simulator:
             pull,
             state.work,
         )
+        if carried is not None:
+            held, places = carried
+            state.x[:, held], state.v[:, held] = places, 0.0
         state.tick += 1
         self._judge(state)
 
@@ -261,17 +266,28 @@ class Simulator:
             np.abs(gap) < ARRIVED, command, state.signals + self.assembly.smoothing * gap
         )
 
-    def _pose(self, state: FaceState) -> None:
-        """Turn the skull side and the held nodes with jaw and lids, if those have moved."""
+    def _pose(self, state: FaceState) -> tuple[IntArray, FloatArray] | None:
+        """Turn the skull side with jaw and lids, and set out the held nodes, if those have moved.
+
+        They travel evenly through the tick: moved at once, at a blink they would send a wave
+        through the skin around the eye.
+
+        Returns:
+            The held nodes and where they are when the tick ends, None where nothing moves.
+        """
         rigid = tuple(float(v) for v in self._rigid_signals(state))
-        if rigid == state.posed and state.skull is not None:
-            return
+        before, tissue = state.skull, self.assembly.tissue
+        if rigid == state.posed and before is not None:
+            state.skull = before._replace(travel=self._still)
+            return None
         jaw, lids = rigid[:3], np.array(rigid[3:])
-        state.skull = pose_skull(self.rig, self.assembly.tissue, jaw, lids)
-        held, places = pose_held(self.rig, self.assembly.tissue, jaw, lids)
-        state.x[:, held] = places
-        state.v[:, held] = 0.0
-        state.posed = rigid
+        skull = pose_skull(self.rig, tissue, jaw, lids)
+        at = tissue.arrays.rest[:, -tissue.node_count :] if before is None else before.targets
+        skull = skull._replace(travel=skull.targets - at)
+        state.skull, state.posed = skull, rigid
+        held, places = pose_held(self.rig, tissue, jaw, lids)
+        state.v[:, held] = (places - state.x[:, held]) * TICKS_PER_SECOND
+        return held, places
 
     def _rigid_signals(self, state: FaceState) -> FloatArray:
         """Return jaw pitch, yaw, degrees, thrust, mm, and the four lid angles, degrees, shape (7,).

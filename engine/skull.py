@@ -17,6 +17,7 @@ def pose_skull(rig: Rig, tissue: TissueModel, jaw: Sequence[float], lids: FloatA
     """Return the skull side with the jaw and lids as given.
 
     The dead load of the pre-tension turns with the jaw too, or the tissue would be pulled askew.
+    Nothing travels.
 
     Args:
         rig: For the hinge and the jaw weights.
@@ -33,7 +34,8 @@ def pose_skull(rig: Rig, tissue: TissueModel, jaw: Sequence[float], lids: FloatA
     bone = rig.jaw.move(tissue.layers.bone, share, pitch, yaw, thrust)
     normals = rig.jaw.turn(tissue.layers.normals, share, pitch, yaw)
     load = rig.jaw.turn(np.ascontiguousarray(tissue.dead_load.T), stacked, pitch, yaw)
-    return Skull(*(np.ascontiguousarray(a.T) for a in (targets, bone, normals, load)))
+    still = np.zeros((n, 3))
+    return Skull(*(np.ascontiguousarray(a.T) for a in (targets, bone, normals, load, still)))
 
 
 def pose_held(

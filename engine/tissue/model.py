@@ -156,6 +156,7 @@ def rest_skull(arrays: Tissue, layers: Layers, load: FloatArray) -> Skull:
         bone=np.ascontiguousarray(layers.bone.T),
         normals=np.ascontiguousarray(layers.normals.T),
         load=load,
+        travel=np.zeros((3, n)),
     )
 
 
