@@ -19,6 +19,7 @@ from .errors import (
     InvalidValue,
     UnknownName,
 )
+from .face import FaceState
 from .facs import LETTERS, REGIONS, ActionUnit, Term, format_facs, parse_facs
 from .flesh import Flesh, examine, jolts, path_dependence, random_mixes
 from .frame import Frame, Pose
@@ -44,7 +45,7 @@ from .rig import (
 )
 from .separability import ALIKE, MOST_ALIKE, Separability, separability
 from .settling import settled, settled_units
-from .simulator import FaceState, Simulator, Snapshot
+from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
 from .timeline import LAYERS, LONGEST_ONSET, TICKS_PER_SECOND, Keyframe, Timeline

@@ -50,6 +50,13 @@ class Assembly:
     smoothing: FloatArray
 
     @property
+    def lid_shares(self) -> FloatArray:
+        """κ of the upper and of the lower lid, shape (2,); 0 where the head has no skin to push."""
+        p = self.rig.parameters
+        pushed = float(len(self.tissue.lids.skin) > 0)
+        return pushed * np.array([p.upper_lid_skin, p.lower_lid_skin])
+
+    @property
     def tableau(self) -> FloatArray:
         """The integrator, as the kernel knows it."""
         return TABLEAUS[self.model.integrator]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 JAW = ("pitch", "yaw", "thrust")
 GAZE = ("yaw", "pitch", "vergence")
@@ -52,9 +53,9 @@ class Channels:
 
     def index(self, group: str, axis: str) -> int:
         """Return the place of, say, ("jaw", "pitch")."""
-        offset = self.muscle_count
-        for name, axes in GROUPS.items():
-            if name == group:
-                return offset + axes.index(axis)
-            offset += len(axes)
-        raise KeyError(group)
+        return self._places[group, axis]
+
+    @cached_property
+    def _places(self) -> dict[tuple[str, str], int]:
+        axes = [(group, axis) for group, names in GROUPS.items() for axis in names]
+        return {axis: self.muscle_count + place for place, axis in enumerate(axes)}

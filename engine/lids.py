@@ -15,9 +15,9 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import FloatArray
-from .tissue import Lids
+from .dynamics import kernel
 
-LID_FOLLOWS = {"down": (0.80, 0.25), "up": (0.40, 0.10)}
+FOLLOWS_DOWN, FOLLOWS_UP = (0.80, 0.25), (0.40, 0.10)
 """Turn of upper and lower lid per degree that the eye looks down or up.
 
 The upper lid goes with the gaze, nearly all the way down and half the way up, the lower one a
@@ -31,51 +31,64 @@ GRID = 2.0**-8
 """Step in which the skin turns a lid, degrees, 1 µm: so that lids at rest are at rest."""
 
 
-def lids_with_gaze(angles: FloatArray, pitch: float) -> FloatArray:
-    """Return the turn of the lids as the eyes look up or down, degrees, shape (2, 2).
+@kernel
+def follow_gaze(angles: FloatArray, pitch: float) -> None:
+    """Turn the lids on as the eyes look up or down.
 
     Args:
-        angles: By the lids' own muscles: side, then upper (positive closes) and lower (positive
-            raises).
+        angles: Degrees by the lids' own muscles, shape (2, 2), overwritten: side, then upper
+            (positive closes) and lower (positive raises).
         pitch: Of both eyes, degrees, up positive.
     """
-    if pitch == 0.0:
-        return angles
-    upper, lower = LID_FOLLOWS["down" if pitch < 0.0 else "up"]
-    followed = angles.copy()
-    share = 1.0 - np.clip(angles[:, 0] / SHUT_ANGLE, 0.0, 1.0)
-    followed[:, 0] -= share * upper * pitch
-    followed[:, 1] += share * lower * pitch
-    return followed
+    upper, lower = FOLLOWS_DOWN if pitch < 0.0 else FOLLOWS_UP
+    for side in range(2):
+        shut = min(max(angles[side, 0] / SHUT_ANGLE, 0.0), 1.0)
+        angles[side, 0] -= (1.0 - shut) * upper * pitch
+        angles[side, 1] += (1.0 - shut) * lower * pitch
 
 
-def lids_with_skin(
-    angles: FloatArray, lids: Lids, x: FloatArray, share: tuple[float, float]
-) -> FloatArray:
-    """Return the turn of the lids as the skin around them pushes, degrees, shape (2, 2).
+@kernel
+def give_to_skin(angles: FloatArray, skin: FloatArray, shares: FloatArray) -> None:
+    """Turn the lids on as the skin around them pushes.
 
     Args:
-        angles: Without the skin: side, then upper and lower.
-        lids: The head's, with the skin that pushes.
-        x: Positions of the nodes, mm, shape (3, nodes).
-        share: κ of the upper and of the lower lid.
+        angles: Without the skin, degrees, shape (2, 2), overwritten: side, then upper and lower.
+        skin: ψ, degrees, in the same order, shape (4,).
+        shares: κ of the upper and of the lower lid, shape (2,).
     """
-    if len(lids.skin) == 0 or share == (0.0, 0.0):
-        return angles
-    kappa = np.array(share)
-    skin = lids.skin_angles(x).reshape(2, 2)
-    return np.asarray(angles + np.round(kappa * (skin - angles) / GRID) * GRID)
+    for side in range(2):
+        for lid in range(2):
+            pushed = shares[lid] * (skin[2 * side + lid] - angles[side, lid])
+            angles[side, lid] += np.round(pushed / GRID) * GRID
 
 
-def lids_meeting(angles: FloatArray, opening: FloatArray) -> FloatArray:
-    """Return the turn of lids that do not pass each other, degrees, shape (2, 2).
-
-    The upper one, which travels farther, stops on the lower.
+@kernel
+def meet(angles: FloatArray, opening: FloatArray) -> None:
+    """Stop lids that would pass each other: the upper one, which travels farther, on the lower.
 
     Args:
-        angles: Side, then upper and lower, degrees.
+        angles: Degrees, shape (2, 2), overwritten: side, then upper and lower.
         opening: Of the eyes at rest, degrees, shape (2,).
     """
-    met = angles.copy()
-    met[:, 0] = np.minimum(angles[:, 0], MEETING * opening - angles[:, 1])
-    return met
+    for side in range(2):
+        angles[side, 0] = min(angles[side, 0], MEETING * opening[side] - angles[side, 1])
+
+
+@kernel
+def stand_lids(
+    own: FloatArray, pitch: float, skin: FloatArray, shares: FloatArray, opening: FloatArray
+) -> FloatArray:
+    """Return where the lids stand, degrees, shape (2, 2): side, then upper and lower.
+
+    Args:
+        own: By their own muscles.
+        pitch: Of both eyes, degrees.
+        skin: Turn of the skin around each, degrees, shape (4,); see `Lids.skin_angles`.
+        shares: κ of upper and lower, shape (2,).
+        opening: Of the eyes at rest, degrees, shape (2,).
+    """
+    angles = own.copy()
+    follow_gaze(angles, pitch)
+    give_to_skin(angles, skin, shares)
+    meet(angles, opening)
+    return angles

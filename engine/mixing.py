@@ -11,6 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .channels import GROUPS
+from .dynamics import kernel
 from .rig import Rig
 from .timeline import LAYERS, Keyframe, ticks
 
@@ -35,6 +36,47 @@ class Held:
         return not (self.action_units or self.muscles or self.axes)
 
 
+@kernel
+def ramps_at(
+    start: FloatArray, target: FloatArray, begin: FloatArray, length: FloatArray, tick: int
+) -> FloatArray:
+    """Return the values of ramps at `tick`, shape (channels,): see `Ramp`."""
+    values = np.empty(start.shape[0])
+    for channel in range(start.shape[0]):
+        values[channel] = eased(
+            start[channel], target[channel], begin[channel], length[channel], tick
+        )
+    return values
+
+
+@kernel
+def eased(start: float, target: float, begin: float, length: float, tick: int) -> float:
+    """Return where a ramp stands at `tick`: an ease in and out, level at both ends."""
+    if tick >= begin + length:
+        return target
+    done = max((tick - begin) / length, 0.0)
+    return start + (target - start) * done * done * (3.0 - 2.0 * done)
+
+
+@kernel
+def merge(ramps: FloatArray, tick: int) -> FloatArray:
+    """Return what layers come to at `tick`, each over the lower by its share, (channels,).
+
+    Args:
+        ramps: Shape (layers, 2, 4, channels): of values and of shares, the fields of `Ramp`.
+        tick: When.
+    """
+    merged = np.zeros(ramps.shape[3])
+    for layer in range(ramps.shape[0]):
+        value, share = ramps[layer, 0], ramps[layer, 1]
+        for c in range(merged.shape[0]):
+            weight = eased(share[0, c], share[1, c], share[2, c], share[3, c], tick)
+            if weight != 0.0:
+                held = eased(value[0, c], value[1, c], value[2, c], value[3, c], tick)
+                merged[c] = merged[c] * (1.0 - weight) + held * weight
+    return merged
+
+
 @dataclass
 class Ramp:
     """A vector on its way from `start` to `target`, each entry in its own time.
@@ -50,17 +92,9 @@ class Ramp:
     begin: FloatArray
     length: FloatArray
 
-    @classmethod
-    def zeros(cls, count: int) -> Ramp:
-        """Return a ramp at rest at 0."""
-        return cls(*(np.zeros(count) for _ in range(4)))
-
     def at(self, tick: int) -> FloatArray:
         """Return the values at `tick`: an ease in and out, level at both ends."""
-        done = np.clip((tick - self.begin) / np.maximum(self.length, 1.0), 0.0, 1.0)
-        done[self.length == 0.0] = 1.0
-        eased = done * done * (3.0 - 2.0 * done)
-        return np.asarray(self.start + (self.target - self.start) * eased)
+        return ramps_at(self.start, self.target, self.begin, self.length, tick)
 
     def end(self) -> int:
         """Return the tick at which the last entry arrives."""
@@ -86,10 +120,8 @@ class Mixer:
 
     def __init__(self, rig: Rig) -> None:
         self._rig = rig
-        count = rig.channels.count
         self._held = {layer: Held() for layer in LAYERS}
-        self._values = {layer: Ramp.zeros(count) for layer in LAYERS}
-        self._shares = {layer: Ramp.zeros(count) for layer in LAYERS}
+        self._take(np.zeros((len(LAYERS), 2, 4, rig.channels.count)))
         self._settled_at = 0
         self._merged: FloatArray | None = None
         self._merged_at = 0
@@ -124,7 +156,7 @@ class Mixer:
         """Return the merged command at `tick`, shape (channels,)."""
         self._expire(tick)
         if self._merged is None or self._merged_at <= self._settled_at:
-            self._merged, self._merged_at = self._merge_layers(tick), tick
+            self._merged, self._merged_at = merge(self._ramps, tick), tick
         return self._merged
 
     def changing(self, tick: int) -> bool:
@@ -160,10 +192,15 @@ class Mixer:
     def __deepcopy__(self, memo: dict[int, object]) -> Mixer:
         twin = Mixer(self._rig)
         twin._held = copy.deepcopy(self._held, memo)
-        twin._values = copy.deepcopy(self._values, memo)
-        twin._shares = copy.deepcopy(self._shares, memo)
+        twin._take(self._ramps.copy())
         twin._settled_at = self._settled_at
         return twin
+
+    def _take(self, ramps: FloatArray) -> None:
+        """Take ramps, shape (layers, 2, 4, channels), and look at them by layer."""
+        self._ramps = ramps
+        self._values = {layer: Ramp(*ramps[i, 0]) for i, layer in enumerate(LAYERS)}
+        self._shares = {layer: Ramp(*ramps[i, 1]) for i, layer in enumerate(LAYERS)}
 
     def _emotion_units(self, label: str, intensity: float) -> dict[str, float]:
         terms = self._rig.resolve_emotion(label).terms
@@ -237,13 +274,6 @@ class Mixer:
             index = channels.index(group, axis)
             target[index], claimed[index] = value, True
         return target, claimed
-
-    def _merge_layers(self, tick: int) -> FloatArray:
-        merged = np.zeros(self._rig.channels.count)
-        for layer in LAYERS:
-            share = self._shares[layer].at(tick)
-            merged = merged * (1.0 - share) + self._values[layer].at(tick) * share
-        return merged
 
     def _layer_report(self, held: Held) -> dict[str, object]:
         report: dict[str, object] = {

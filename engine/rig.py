@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any
@@ -103,6 +103,11 @@ class Model:
             value = getattr(self, f.name)
             if value not in MODEL_CHOICES[f.name]:
                 raise UnknownName(f"model {f.name}", str(value), MODEL_CHOICES[f.name])
+
+    @property
+    def runs_together(self) -> bool:
+        """Whether the kernel for many faces at once has these springs and forces."""
+        return self.forces == "rest" and self.springs == "continuous"
 
     @classmethod
     def for_rig(cls, rig: Rig, **choices: str) -> Model:
@@ -241,7 +246,7 @@ class Rig:
         total = np.zeros(self.channels.count)
         for side in SIDES:
             total += self._side_vector(levels[side], side)
-        return self._limited(total)
+        return np.asarray(np.clip(total, *self._limits))
 
     def check(self, keyframe: Keyframe) -> list[str]:
         """Return warnings about a command that can be played.
@@ -420,7 +425,7 @@ class Rig:
         for name, intensity in sorted(acting.levels.items()):
             unit = self.action_units[name]
             scale = unit.scale(intensity)
-            for index, share, stem in self._muscles_of(side):
+            for index, share, stem in self._muscles_of[side]:
                 muscle = self.muscle_names[index]
                 weight = unit.muscles.get(muscle, unit.muscles.get(stem, 0.0))
                 if weight:
@@ -431,27 +436,30 @@ class Rig:
                 half = 1.0 if unit.one_sided else 0.5
                 sign = -1.0 if unit.one_sided and side == "R" and (group, axis) in MIRRORED else 1.0
                 vector[self.channels.index(group, axis)] += sign * half * scale * value
-        for index, share, stem in self._muscles_of(side):
+        for index, share, stem in self._muscles_of[side]:
             vector[index] += share * acting.adds.get(stem, 0.0)
         return vector
 
-    def _muscles_of(self, side: str) -> Iterator[tuple[int, float, str]]:
-        """Give index, share and name without side of the muscles of one side of the face.
+    @cached_property
+    def _muscles_of(self) -> dict[str, list[tuple[int, float, str]]]:
+        """Index, share and name without side of the muscles of each side of the face.
 
         Half of a midline muscle acts for each side: it has only two halves to give.
         """
+        muscles: dict[str, list[tuple[int, float, str]]] = {side: [] for side in SIDES}
         for index, name in enumerate(self.muscle_names):
             stem, _, own = name.partition(".")
-            if not own or own == side:
-                yield index, 1.0 if own else 0.5, stem
+            for side in own or SIDES:
+                muscles[side].append((index, 1.0 if own else 0.5, stem))
+        return muscles
 
-    def _limited(self, vector: FloatArray) -> FloatArray:
-        for index, muscle in enumerate(self.muscles):
-            vector[index] = np.clip(vector[index], least_activation(muscle), MAX_ACTIVATION)
-        for (group, axis), limits in LIMITS.items():
-            index = self.channels.index(group, axis)
-            vector[index] = np.clip(vector[index], *limits)
-        return vector
+    @cached_property
+    def _limits(self) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest value of each channel, shape (channels,)."""
+        limits = [(least_activation(muscle), MAX_ACTIVATION) for muscle in self.muscles]
+        limits += [LIMITS[group, axis] for group, axes in GROUPS.items() for axis in axes]
+        least, most = np.array(limits).T
+        return least, most
 
     def _custom_unit(self, name: str, spec: Mapping[str, object]) -> ActionUnit:
         known = {"muscles", "jaw", "pose", "title", "region"}

@@ -170,9 +170,13 @@ class EmotionCommand(Body):
 
 
 class ModelChoice(Body):
-    """The numerical model of a session; the defaults are the product's."""
+    """The numerical model of a session or clip; the defaults are the rig's own."""
 
-    integrator: Literal["rk2", "heun", "symplectic_euler", "rk4"] = "rk2"
+    integrator: Literal["rk2", "heun", "symplectic_euler", "rk4", "verlet"] = Field(
+        default="rk2",
+        description='A session that names none runs "verlet", on the kernel for many faces; '
+        'a clip the paper\'s "rk2".',
+    )
     forces: Literal["rest", "current"] = "rest"
     springs: Literal["continuous", "literal"] = "continuous"
     sphincter: Literal["ring", "literal"] = "ring"

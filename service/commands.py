@@ -123,6 +123,18 @@ def model_of(choice: ModelChoice, rig: Rig) -> Model:
     return Model.for_rig(rig, **choice.model_dump(exclude_unset=True))
 
 
+def live_model(choice: ModelChoice, rig: Rig) -> Model:
+    """Return the model of a session: of no integrator chosen, the one for many faces at once.
+
+    It draws what the paper's does (`tests/engine/test_accuracy.py`); a rig with the paper's own
+    forms of springs and forces keeps the paper's integrator too.
+    """
+    model = model_of(choice, rig)
+    if "integrator" in choice.model_fields_set or not model.runs_together:
+        return model
+    return replace(model, integrator="verlet")
+
+
 def hold(held: dict[str, Keyframe], keyframe: Keyframe, rig: Rig) -> None:
     """Take `keyframe` into `held`: for each layer one keyframe with all that it holds.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..dynamics import Contacts, IndexArray
+from ..dynamics import Contacts, IndexArray, kernel
 from ..head import Head
 
 LIP_GAP_MM = 0.12
@@ -77,11 +77,27 @@ class Lids:
         Args:
             x: Positions of the nodes, mm, shape (3, nodes).
         """
-        (y0, z0), (y, z) = self.skin_place, x[1:, self.skin] - self.skin_center
-        turned = np.degrees(np.arctan2(y * z0 - z * y0, y * y0 + z * z0))
-        signed = np.where(self.skin_channel % 2 == 0, -turned, turned)
-        count = np.maximum(np.bincount(self.skin_channel, minlength=4), 1)
-        return np.asarray(np.bincount(self.skin_channel, signed, minlength=4) / count)
+        y, z = x[1:, self.skin] - self.skin_center
+        return skin_angles(self.skin_channel, self.skin_place, y, z)
+
+
+@kernel
+def skin_angles(channel: IntArray, place: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+    """Return how far the skin around each lid has gone about the eye, degrees, shape (4,).
+
+    Args:
+        channel: `Lids.skin_channel`.
+        place: `Lids.skin_place`.
+        y: How far above the eye's centre each node is now, mm, shape (s,).
+        z: How far before it, mm, shape (s,).
+    """
+    angles, count = np.zeros(4), np.zeros(4)
+    for k in range(channel.shape[0]):
+        y0, z0 = place[0, k], place[1, k]
+        turned = math.degrees(math.atan2(y[k] * z0 - z[k] * y0, y[k] * y0 + z[k] * z0))
+        angles[channel[k]] += -turned if channel[k] % 2 == 0 else turned
+        count[channel[k]] += 1.0
+    return angles / np.maximum(count, 1.0)
 
 
 def ring_and_spoke(name: str) -> tuple[str, int, str]:

@@ -11,7 +11,7 @@ from engine import UnknownName, face_to_glb
 
 from ..bodies import Changes, Controls, EmotionCommand, NewSession
 from ..clashes import clashes
-from ..commands import controls_keyframe, model_of, play_emotion
+from ..commands import controls_keyframe, live_model, play_emotion
 from ..components import Components, Parts
 from ..errors import refused_by_engine
 from ..sessions import Session
@@ -24,7 +24,7 @@ router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 async def open_session(parts: Parts, response: Response, body: NewSession) -> dict[str, Any]:
     """Open a session: a face at rest, until somebody commands it."""
     rig = await parts.rigs.get(body.rig)
-    session = await parts.sessions.open(rig, model_of(body.model, rig))
+    session = await parts.sessions.open(rig, live_model(body.model, rig))
     response.headers["Location"] = f"/api/sessions/{session.id}"
     return session.describe()
 

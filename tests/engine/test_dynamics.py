@@ -132,6 +132,7 @@ def pull_of(tissue: SmallTissue, size: float) -> np.ndarray:
         ("heun", 2.0, 300.0),
         ("rk4", 4.0, 3.0),
         ("symplectic_euler", 1.0, 300.0),
+        ("verlet", 2.0, 300.0),
     ],
 )
 def test_integrators_have_their_order(patch, name, order, load):

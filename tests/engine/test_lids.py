@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import Keyframe, Simulator
-from engine.lids import GRID, MEETING, lids_meeting, lids_with_skin
+from engine.lids import GRID, MEETING, stand_lids
 from engine.measure import CHEEK, INNER_BROW, LOWER_LID, OUTER_BROW, UPPER_LID, Face, settle
 from engine.skull import turn_lids
 from engine.tissue.contact import lids_of
@@ -29,18 +29,28 @@ def test_the_skin_of_a_turned_ring_has_turned_as_far(standard_rig):
     assert (moved[upper, 1] < head.points[lids.nodes[upper], 1]).all()
 
 
-def test_a_lid_stands_where_muscle_and_skin_balance(standard_rig):
-    head = standard_rig.head
-    lids = lids_of(head)
-    x = np.tile(head.points[: head.sheet_count], (3, 1)).T
+WIDE = np.array([80.0, 80.0])
+
+
+def test_a_lid_stands_where_muscle_and_skin_balance():
     held = np.array([[10.0, 4.0], [0.0, 0.0]])
-    stood = lids_with_skin(held, lids, x, (0.1, 0.3))
-    assert stood == pytest.approx(held * [0.9, 0.7], abs=GRID)
-    assert lids_with_skin(held, lids, x, (0.0, 0.0)) is held
+    skin = np.array([0.0, 0.0, 5.0, -5.0])
+    stood = stand_lids(held, 0.0, skin, np.array([0.1, 0.3]), WIDE)
+    assert stood == pytest.approx(np.array([[9.0, 2.8], [0.5, -1.5]]), abs=GRID)
+    assert (stand_lids(held, 0.0, skin, np.zeros(2), WIDE) == held).all()
+
+
+def test_lids_follow_the_gaze_while_they_are_open():
+    own = np.array([[0.0, 0.0], [40.0, 0.0]])
+    down = stand_lids(own, -10.0, np.zeros(4), np.zeros(2), WIDE)
+    assert down == pytest.approx(np.array([[8.0, -2.5], [40.0, 0.0]]))
+    up = stand_lids(own, 10.0, np.zeros(4), np.zeros(2), WIDE)
+    assert up == pytest.approx(np.array([[-4.0, 1.0], [40.0, 0.0]]))
 
 
 def test_shut_lids_do_not_pass_each_other():
-    met = lids_meeting(np.array([[45.0, 8.0], [10.0, 8.0]]), np.array([40.0, 40.0]))
+    own = np.array([[45.0, 8.0], [10.0, 8.0]])
+    met = stand_lids(own, 0.0, np.zeros(4), np.zeros(2), np.array([40.0, 40.0]))
     assert met == pytest.approx(np.array([[MEETING * 40.0 - 8.0, 8.0], [10.0, 8.0]]))
 
 

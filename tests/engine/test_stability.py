@@ -79,7 +79,7 @@ def test_edits_at_their_limits_stay_bounded(standard_rig, edit, integrator):
 def fastest_mode(simulator: Simulator, state: FaceState) -> float:
     """Return ω, rad/s, of the forces as they are at `state`, by power iteration."""
     tissue = simulator.assembly.tissue.arrays
-    skull, pull = simulator._forces(state)
+    skull, pull = simulator._stepper._forces(state)
     root = np.sqrt(tissue.inverse_mass)
     mode = np.sin(1.0 + np.arange(state.x.size)).reshape(state.x.shape) * (root > 0.0)
     scratch = scratch_for(tissue)

@@ -1,0 +1,114 @@
+"""Faces stepped sixteen at a time in float32: the live ones, whose tissue is the fast kernel's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from .alone import ARRIVED, skull_of, surface_of
+from .arrays import FloatArray
+from .assembly import Assembly
+from .dynamics import Skull
+from .face import FaceState
+from .lanes import WIDTH, Bank, plan_of
+
+
+class Together:
+    """Steps faces of one rig and model in banks; a face has a seat in one while it is awake."""
+
+    def __init__(self, assembly: Assembly, *, farthest: float) -> None:
+        """Take a rig.
+
+        Args:
+            assembly: The rig and model, compiled; see `fits`.
+            farthest: Displacement from which a face counts as lost, mm.
+        """
+        self._assembly, self._farthest = assembly, farthest
+        self._plan = plan_of(assembly)
+        self._seats: dict[Bank, list[FaceState | None]] = {}
+
+    @staticmethod
+    def fits(assembly: Assembly) -> bool:
+        """Return whether the fast kernel has all the terms of a rig and model."""
+        model, plate = assembly.model, assembly.tissue.arrays.plate
+        return model.integrator == "verlet" and model.runs_together and len(plate.values) == 0
+
+    def step(self, faces: Sequence[FaceState], pool: ThreadPoolExecutor | None) -> None:
+        """Advance every face by a tick; those that have no seat take one."""
+        self._close_up(len(faces))
+        for face in faces:
+            if face.seat is None:
+                self._sit(face)
+        banks = [bank for bank, seats in self._seats.items() if any(seats)]
+        if pool is not None and len(banks) > 1:
+            list(pool.map(self._step, banks))
+        else:
+            for bank in banks:
+                self._step(bank)
+
+    def settle(self, face: FaceState) -> None:
+        """Bring positions and velocities of a face up to date."""
+        if face.seat is not None:
+            bank, lane = face.seat
+            face.x, face.v, face.targets = bank.read(lane)
+
+    def leave(self, face: FaceState) -> None:
+        """Take a face that sleeps or goes from its seat."""
+        if face.seat is None:
+            return
+        self.settle(face)
+        bank, lane = face.seat
+        face.signals = bank.signals[lane].copy()
+        face.seat = None
+        if face.seen is not None:
+            face.seen = face.seen.copy()
+        self._seats[bank][lane] = None
+        bank.clear(lane)
+
+    def displacements(self, face: FaceState, jaw: FloatArray) -> FloatArray:
+        """Return the surface from rest, mm, shape (s, 3), with the jaw at pitch, yaw, thrust."""
+        return surface_of(self._assembly, face.x, jaw) if face.seen is None else face.seen
+
+    def skull(self, face: FaceState) -> Skull:
+        """Return the skull side of a face as it stands."""
+        return skull_of(self._assembly, face)
+
+    def _sit(self, face: FaceState) -> None:
+        bank = next((bank for bank, seats in self._seats.items() if None in seats), None)
+        if bank is None:
+            bank = Bank(self._plan, farthest=self._farthest)
+            self._seats[bank] = [None] * WIDTH
+        seats = self._seats[bank]
+        lane = seats.index(None)
+        seats[lane], face.seat = face, (bank, lane)
+        bank.seat(lane, face.x, face.v, face.targets)
+        bank.signals[lane] = face.signals
+        face.signals = bank.signals[lane]
+
+    def _close_up(self, count: int) -> None:
+        """Give up a bank whose faces have room in the others."""
+        taken = {bank: sum(seat is not None for seat in s) for bank, s in self._seats.items()}
+        if len(taken) <= 1 or WIDTH * (len(taken) - 1) < max(count, sum(taken.values())):
+            return
+        emptiest = min(taken, key=lambda bank: taken[bank])
+        leaving = [face for face in self._seats[emptiest] if face is not None]
+        for face in leaving:
+            self.leave(face)
+        del self._seats[emptiest]
+        for face in leaving:
+            self._sit(face)
+
+    def _step(self, bank: Bank) -> None:
+        seated = [(lane, face) for lane, face in enumerate(self._seats[bank]) if face is not None]
+        commands = bank.signals.copy()
+        for lane, face in seated:
+            commands[lane] = face.mixer.at(face.tick)
+        gap = commands - bank.signals
+        near = np.abs(gap) < ARRIVED
+        bank.signals[:] = np.where(near, commands, bank.signals + self._assembly.smoothing * gap)
+        seen = bank.step()
+        speed, lost = bank.speed.tolist(), bank.lost.tolist()
+        for lane, face in seated:
+            face.seen, face.speed, face.lost = seen[lane], speed[lane], lost[lane] > 0.0
