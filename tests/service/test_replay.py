@@ -11,7 +11,7 @@ import pytest
 from conftest import LOCAL, parts_of, settings_in, until
 from starlette.testclient import TestClient
 
-from engine import Keyframe, Rig, Simulator, Timeline, record
+from engine import Keyframe, Model, Rig, Simulator, Timeline, record
 from service.app import create_app
 from service.runner import Move
 from service.sessions import Command, Session
@@ -40,9 +40,9 @@ def drive(client: TestClient, session: str) -> None:
     client.patch(f"{path}/controls", json={"jaw": {"pitch": 9}, "layer": "speech", "fade": 0.05})
 
 
-def replayed(rig: Rig, commands: list[Command], until_tick: int) -> np.ndarray:
+def replayed(rig: Rig, commands: list[Command], until_tick: int, model: Model) -> np.ndarray:
     """Return the displacements a fresh simulator reaches by the same commands."""
-    simulator, tick = Simulator(rig), 0
+    simulator, tick = Simulator(rig, model=model), 0
     simulator.add("a")
     for command in [*commands, None]:
         for _ in range(tick, command.tick if command else until_tick):
@@ -51,7 +51,7 @@ def replayed(rig: Rig, commands: list[Command], until_tick: int) -> np.ndarray:
         if command is None:
             break
         if isinstance(command.command, Move):
-            other = Simulator(command.command.rig)
+            other = Simulator(command.command.rig, model=model)
             other.add("a", state=simulator.remove("a"))
             simulator = other
         else:
@@ -64,7 +64,7 @@ def test_a_session_played_again_gives_the_same_bits(client: TestClient, session:
     until(lambda: asleep(client, session))
     face = live(client, session)
     commands = list(face.commands)
-    again = replayed(face.rig, commands, face.frame.tick)
+    again = replayed(face.rig, commands, face.frame.tick, face.model)
     np.testing.assert_array_equal(again, face.frame.displacements)
 
 
@@ -77,7 +77,8 @@ def test_a_session_recorded_as_a_clip_gives_the_same_bits(client: TestClient, se
         for command in face.commands
         if isinstance(command.command, Keyframe)
     )
-    clip = record(face.rig, Timeline(keyframes, face.frame.tick / 60), fps=60)
+    timeline = Timeline(keyframes, face.frame.tick / 60)
+    clip = record(face.rig, timeline, fps=60, model=face.model)
     np.testing.assert_array_equal(
         clip.displacements[-1], face.frame.displacements.astype(np.float32)
     )
@@ -92,7 +93,7 @@ def test_a_live_edit_is_on_the_timeline(client: TestClient, session: str) -> Non
     until(lambda: asleep(client, session))
     face = live(client, session)
     assert any(isinstance(command.command, Move) for command in face.commands)
-    again = replayed(rig, list(face.commands), face.frame.tick)
+    again = replayed(rig, list(face.commands), face.frame.tick, face.model)
     np.testing.assert_array_equal(again, face.frame.displacements)
 
 
