@@ -181,7 +181,7 @@ def part(function: Callable[..., Any]) -> Any:
     """Compile what takes or returns lanes, for use in kernels."""
     if TYPE_CHECKING:
         return function
-    return numba.njit(error_model="numpy")(function)
+    return numba.njit(error_model="numpy", forceinline=True)(function)
 
 
 @part
