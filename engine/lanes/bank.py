@@ -76,6 +76,7 @@ class Bank:
     """Up to sixteen faces of one rig; lanes that nobody has taken stay at rest.
 
     Attributes:
+        faces: The arrays, as kernels take them.
         signals: Activations, jaw, gaze and head of each lane, shape (16, channels).
         speed: Greatest component of a velocity in each lane after the last tick, mm/s.
         lost: How many components of each lane were too far from rest, or no numbers.
@@ -91,7 +92,7 @@ class Bank:
         self._plan, self._farthest = plan, farthest
         n = len(plan.order.columns)
         sizes = (*(9 * n,) * 4, *(3 * n,) * 4, 9 * len(plan.posing.held))
-        self._faces = Faces(*(aligned(size * WIDTH) for size in sizes))
+        self.faces = Faces(*(aligned(size * WIDTH) for size in sizes))
         self._targets = np.ascontiguousarray(plan.rest.reshape(n, 3, 3)[:, 2])
         self._moved = aligned(3 * plan.points * WIDTH)
         self._jaw, self._lids = aligned(3 * WIDTH), aligned(4 * WIDTH)
@@ -119,7 +120,7 @@ class Bank:
             v: Velocities, mm/s, shape (3, nodes).
             targets: Where its ties are held, mm, shape (3, n); where they are at rest if None.
         """
-        order, faces = self._plan.order, self._faces
+        order, faces = self._plan.order, self.faces
         self.clear(lane)
         _nodes(faces.x)[order.nodes, :, lane] = x.T
         _nodes(faces.v)[order.nodes, :, lane] = v.T
@@ -128,16 +129,16 @@ class Bank:
 
     def read(self, lane: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return positions, velocities and the ties' targets of a lane, as `seat` takes them."""
-        order, faces = self._plan.order, self._faces
+        order, faces = self._plan.order, self.faces
         x, v = (_nodes(array)[order.nodes, :, lane] for array in (faces.x, faces.v))
         targets = _nodes(faces.target)[order.places, :, lane]
         return _rows(x), _rows(v), _rows(targets)
 
     def clear(self, lane: int) -> None:
         """Put a lane to rest."""
-        _nodes(self._faces.x)[:, :, lane] = self._plan.rest.reshape(-1, 3)
-        _nodes(self._faces.v)[:, :, lane] = 0.0
-        _nodes(self._faces.target)[:, :, lane] = self._targets
+        _nodes(self.faces.x)[:, :, lane] = self._plan.rest.reshape(-1, 3)
+        _nodes(self.faces.v)[:, :, lane] = 0.0
+        _nodes(self.faces.target)[:, :, lane] = self._targets
         self.signals[lane] = 0.0
 
     def step(self) -> FloatArray:
@@ -146,7 +147,7 @@ class Bank:
         Returns:
             Displacements from rest of every lane, mm, shape (16, s, 3).
         """
-        plan, faces = self._plan, self._faces
+        plan, faces = self._plan, self.faces
         self._pose()
         advance(
             faces,
@@ -170,9 +171,9 @@ class Bank:
             plan.slide * pitch + thrust,
         )
         self._activations.reshape(-1, WIDTH)[:] = signals[:, :m].T
-        turn_lids(self._faces.x, signals, plan.lidding, self._lids)
+        turn_lids(self.faces.x, signals, plan.lidding, self._lids)
         pose(
-            self._faces,
+            self.faces,
             plan.posing,
             self._jaw,
             self._lids,

@@ -151,7 +151,7 @@ def test_a_face_that_diverges_leaves_its_neighbours_alone(standard_rig, live):
     simulator.step()
     undisturbed.step()
     bank, lane = simulator._faces["0"].seat
-    bank._faces.v.reshape(-1, WIDTH)[300, lane] = np.nan
+    bank.faces.v.reshape(-1, WIDTH)[300, lane] = np.nan
     frames, expected = simulator.step(), undisturbed.step()["0"]
     assert frames["0"].diverged
     assert not frames["0"].displacements.any()
