@@ -21,6 +21,7 @@ from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .explaining import explain
 from .ground_truth import ground_truth_csv
+from .priority import background_pool
 from .rendering import SIMULATION_SHARE
 from .rigs import Rigs
 from .runner import Runner
@@ -74,6 +75,7 @@ class Clips:
         self._max_keyframes = max_keyframes
         self._on_end = on_end
         self._free = asyncio.Semaphore(threads)
+        self._writers = background_pool(threads, "clips")
         self._jobs: dict[str, _Job] = {}
 
     def start(self) -> None:
@@ -96,6 +98,7 @@ class Clips:
             if job.task is not None:
                 job.task.cancel()
         await asyncio.gather(*(job.task for job in jobs if job.task), return_exceptions=True)
+        await asyncio.to_thread(self._writers.shutdown, cancel_futures=True)
 
     async def submit(self, clip: NewClip) -> ClipRow:
         """Queue a clip.
@@ -231,9 +234,10 @@ class Clips:
             cancelled=job.cancelled.is_set,
         )
         simulated = time.perf_counter()
-        drawn = replace(rendered, rig=rig.at_level(request.level))
         maps = await self._rigs.textures(rig) if request.textures else {}
-        size = await asyncio.to_thread(self._write, clip, drawn, timeline, maps, job)
+        size = await asyncio.get_running_loop().run_in_executor(
+            self._writers, self._write, clip, request.level, rendered, timeline, maps, job
+        )
         ended = time.perf_counter()
         return {
             "frames": len(rendered.displacements),
@@ -248,17 +252,19 @@ class Clips:
     def _write(
         self,
         clip: str,
+        level: str,
         rendered: Clip,
         timeline: Timeline,
         maps: Mapping[str, bytes],
         job: _Job,
     ) -> int:
         self._folder.mkdir(parents=True, exist_ok=True)
+        drawn = replace(rendered, rig=rendered.rig.at_level(level))
         data = clip_to_glb(
-            rendered, textures=maps, progress=job.written, cancelled=job.cancelled.is_set
+            drawn, textures=maps, progress=job.written, cancelled=job.cancelled.is_set
         )
         self._path(clip, "glb").write_bytes(data)
-        self._path(clip, "csv").write_text(ground_truth_csv(rendered, timeline))
+        self._path(clip, "csv").write_text(ground_truth_csv(drawn, timeline))
         return len(data)
 
     def _checked(self, clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:

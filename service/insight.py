@@ -6,7 +6,6 @@ import asyncio
 import os
 import threading
 from collections.abc import AsyncIterator, Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -33,6 +32,7 @@ from engine import (
 from .errors import Busy, refused_by_engine
 from .insight_bodies import InverseRequest
 from .latest_first import LatestFirst
+from .priority import AWAITED, background_pool
 from .runner import Look
 from .shelf import Shelf
 
@@ -67,7 +67,9 @@ class Insight:
         self._queue_limit = queue_limit
         self._asked = 0
         self._closing = threading.Event()
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="insight")
+        self._pool = background_pool(1, "insight")
+        # Beside it: an analysis takes a tenth of a second, an inverse some seconds.
+        self._analyses = background_pool(1, "analysis", steps=AWAITED)
         self._measuring = LatestFirst("measuring", most=_BASES_WAITING)
         self._bases: Shelf[UnitBasis] = Shelf(_BASES_IN_MEMORY, self._measuring)
         self._responses: Shelf[Response] = Shelf(_RESPONSES_IN_MEMORY, self._measuring)
@@ -77,6 +79,7 @@ class Insight:
         """Stop at the next tick of what is being simulated."""
         self._closing.set()
         self._pool.shutdown(wait=True, cancel_futures=True)
+        self._analyses.shutdown(wait=True, cancel_futures=True)
         self._measuring.shutdown(wait=True, cancel_futures=True)
 
     async def analyze(self, look: Look, *, measured: bool, wait: float = 0.0) -> Insights:
@@ -189,7 +192,7 @@ class Insight:
 
     async def _computed(self, compute: Callable[[], Result]) -> Result:
         try:
-            return await asyncio.to_thread(compute)
+            return await asyncio.get_running_loop().run_in_executor(self._analyses, compute)
         except EngineError as error:
             raise refused_by_engine(error) from error
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
-from contextlib import suppress
 from typing import Any, TypeVar
+
+from .priority import stand_back
 
 T = TypeVar("T")
 _Job = tuple[Future[Any], Callable[[], Any]]
-_NICENESS = 10
-"""How far the thread stands back behind those of live faces, where the system lets threads."""
 
 
 class LatestFirst(Executor):
@@ -62,7 +60,7 @@ class LatestFirst(Executor):
             self._thread.join()
 
     def _work(self) -> None:
-        _stand_back()
+        stand_back()
         while (job := self._next()) is not None:
             future, make = job
             if not future.set_running_or_notify_cancel():
@@ -77,9 +75,3 @@ class LatestFirst(Executor):
         with self._changed:
             self._changed.wait_for(lambda: self._jobs or self._closed)
             return self._jobs.pop() if self._jobs else None
-
-
-def _stand_back() -> None:
-    """Lower this thread's priority: Linux gives each thread its own."""
-    with suppress(OSError, AttributeError):
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import json
 import re
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import reduce
 from pathlib import Path
@@ -39,6 +39,7 @@ from engine import (
 from .errors import Busy, NotFound, Unprocessable, refused_by_engine
 from .explaining import did_you_mean
 from .latest_first import LatestFirst
+from .priority import AWAITED, background_pool
 from .shelf import Shelf
 from .store import Store
 
@@ -104,8 +105,8 @@ class Rigs:
         self._cache_dir = cache_dir
         self._cache_bytes = cache_bytes
         self._limit = limit
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="rigs")
-        self._files_pool = ThreadPoolExecutor(1, thread_name_prefix="files")
+        self._pool = background_pool(1, "rigs", steps=AWAITED)
+        self._files_pool = background_pool(1, "files", steps=AWAITED)
         self._rigs: Shelf[Rig] = Shelf(_RIGS_IN_MEMORY, self._pool)
         self._files: Shelf[bytes] = Shelf(_FILES_IN_MEMORY, self._files_pool)
         # A pool of its own: a bake takes seconds, and files must not wait behind it.
@@ -267,6 +268,10 @@ class Rigs:
         maps = await self.textures(rig) if textured else {}
         name = hashlib.sha256(key.encode()).hexdigest()[:32]
         return await self._file(name, lambda: make(maps))
+
+    async def written(self, make: Callable[[], bytes]) -> bytes:
+        """Return a file that is made once and not kept."""
+        return await asyncio.get_running_loop().run_in_executor(self._files_pool, make)
 
     def _known(self, name: str) -> str | None:
         """Return the name or the row's id that a name or any id of a rig stands for.

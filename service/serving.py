@@ -11,6 +11,7 @@ from rich.console import Console
 
 from .app import create_app
 from .components import Components
+from .priority import take_short_turns
 from .server import listen, server_of, url_of
 from .settings import Settings
 
@@ -23,6 +24,7 @@ async def serve_until_stopped(settings: Settings, console: Console) -> None:
     Raises:
         OSError: If the address cannot be used.
     """
+    take_short_turns()
     listener = listen(settings.host, settings.port)
     app = create_app(settings)
     server = server_of(app, settings)
