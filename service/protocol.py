@@ -25,12 +25,12 @@ bit is not set is at rest, to half a step. `docs/stream.md` has a reader of 40 l
 
 from __future__ import annotations
 
+import math
 import struct
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
 from engine import Frame, JawHinge
 
@@ -92,11 +92,10 @@ def surface_frame(frame: Frame, jaw: JawHinge) -> SurfaceFrame:
     """
     pose = frame.pose
     rotation, offset = jaw.transform(pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)
-    x, y, z, w = (float(value) for value in Rotation.from_matrix(rotation).as_quat())
     return SurfaceFrame(
         tick=frame.tick,
         asleep=frame.asleep,
-        jaw_quaternion=(x, y, z, w),
+        jaw_quaternion=_quaternion(rotation),
         jaw_offset=(offset[0] / 1000.0, offset[1] / 1000.0, offset[2] / 1000.0),
         gaze=(*pose.gaze_left, *pose.gaze_right),
         head=pose.head,
@@ -104,6 +103,18 @@ def surface_frame(frame: Frame, jaw: JawHinge) -> SurfaceFrame:
         head_thrust=pose.head_thrust / 1000.0,
         tongue_thrust=pose.tongue_thrust / 1000.0,
     )
+
+
+def _quaternion(rotation: npt.NDArray[np.float64]) -> tuple[float, float, float, float]:
+    """Return a rotation of less than 120 degrees, shape (3, 3), as a quaternion x, y, z, w.
+
+    Written out, because it is made for each frame of each watched face: a general function takes
+    longer than all the rest of the frame.
+    """
+    (_, xy, xz), (yx, _, yz), (zx, zy, _) = rotation.tolist()
+    parts = (zy - yz, xz - zx, yx - xy, 1.0 + float(rotation.trace()))
+    length = math.hypot(*parts)
+    return (parts[0] / length, parts[1] / length, parts[2] / length, parts[3] / length)
 
 
 def _to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
