@@ -45,7 +45,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         parts = Components.make(settings, metrics, rate)
-        metrics.watch_simulation(parts.runner.counters)
+        metrics.watch_simulation(parts.runner.counters, parts.runner.load)
+        metrics.watch_times(
+            "loop_delay_seconds", "How late the event loop woke.", parts.loop_delay.times
+        )
         metrics.gauge("viewers", "Sockets open.", lambda: parts.sessions.viewer_count)
         app.state.parts = parts
         parts.start()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 from dataclasses import dataclass, field
 from typing import Annotated
 
@@ -15,6 +16,7 @@ from .clips import Clips
 from .embedded import EmbeddedRunner
 from .guard import RateLimit
 from .insight import Insight
+from .loop_delay import LoopDelay
 from .metrics import Metrics
 from .rigs import Rigs
 from .sessions import Sessions
@@ -43,6 +45,7 @@ class Components:
     sessions: Sessions
     clips: Clips
     insight: Insight
+    loop_delay: LoopDelay
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     stage: str = "starting"
     _warming: asyncio.Task[None] | None = None
@@ -58,7 +61,9 @@ class Components:
             limit=settings.max_rigs,
         )
         runner = EmbeddedRunner(
-            simulation_threads=settings.simulation_threads, render_threads=settings.render_threads
+            simulation_threads=settings.simulation_threads,
+            render_threads=settings.render_threads,
+            capacity=settings.capacity_share,
         )
         sessions = Sessions(
             runner,
@@ -81,11 +86,23 @@ class Components:
             on_end=lambda status: metrics.clips.labels(status).inc(),
         )
         insight = Insight(queue_limit=settings.max_queued_analyses)
-        return cls(settings, metrics, rate, store, rigs, runner, sessions, clips, insight)
+        return cls(
+            settings,
+            metrics,
+            rate,
+            store,
+            rigs,
+            runner,
+            sessions,
+            clips,
+            insight,
+            LoopDelay(),
+        )
 
     def start(self) -> None:
         """Start the threads and tasks, and warm up beside them."""
         self.runner.start()
+        self.loop_delay.start()
         self.sessions.start()
         self._warming = asyncio.create_task(self._warm_up(), name="warm-up")
 
@@ -96,10 +113,12 @@ class Components:
             await asyncio.gather(self._warming, return_exceptions=True)
         await self.clips.stop()
         await self.sessions.stop()
+        await self.loop_delay.stop()
         await asyncio.to_thread(self.runner.stop)
         await asyncio.to_thread(self.insight.close)
         await asyncio.to_thread(self.rigs.close)
         self.store.close()
+        gc.unfreeze()
 
     async def _warm_up(self) -> None:
         """Build the first rig and compile every kernel a face needs."""
@@ -116,6 +135,10 @@ class Components:
             self.stage = f"failed: {error}"
             _LOG.exception("the service could not warm up")
             return
+        # What is there now stays: looking through it again and again would stop every thread,
+        # the simulation's too, for 50 ms at a time.
+        gc.collect()
+        gc.freeze()
         self.stage = "ready"
         self.ready.set()
         self.rigs.bake(rig)  # The first page is about to ask for them.

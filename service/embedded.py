@@ -1,12 +1,14 @@
 """The runner inside this process: one simulation thread owns every simulator, at a fixed 60 Hz.
 
-Rendering has its own bounded pool, so that batch work never queues ahead of live ticks.
+Rendering and building have bounded pools of their own, whose threads stand back: batch work never
+queues ahead of live ticks, nor takes a core that they want.
 """
 
 from __future__ import annotations
 
 import asyncio
 import math
+import sys
 import threading
 import time
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
@@ -18,12 +20,22 @@ import structlog
 from engine import LONGEST_ONSET, Clip, Frame, Keyframe, Model, Rig, Simulator, Timeline, record
 
 from .errors import NotFound
+from .load import TICK_SECONDS, Load
 from .mailbox import Mailbox
+from .priority import AWAITED, background_pool
 from .runner import Cancelled, Look, Move, Progress, Tick, View
+from .timing import Times
 from .writers import with_writers
 
 _LOG = structlog.get_logger("runner")
-_TICK_SECONDS = 1.0 / Simulator.TICKS_PER_SECOND
+_LATE_SECONDS = TICK_SECONDS / 2
+"""From which on a tick counts as late: its frame then misses the picture of a display at 60 Hz."""
+_SWITCH_SECONDS = 0.0005
+"""How long one thread may hold the interpreter while another waits for it. A tick asks for it after
+each kernel call; with the default of 5 ms, a thread that writes a file delays a tick ten times."""
+
+_FIRST_TICKS = 3
+"""Ticks of a new simulator that do not tell what a face costs: they load compiled kernels."""
 
 
 @dataclass
@@ -32,11 +44,14 @@ class Counters:
 
     Attributes:
         ticks: Ticks stepped.
-        overruns: Ticks that were late; the faces slow down instead of skipping.
+        overruns: Ticks that ended late, by more than half a tick.
         resets: Faces put back to rest because their numbers ran away.
         busy_seconds: Time spent stepping.
-        awake: Faces stepped in the last tick.
+        awake: Faces that the last tick left awake.
         last_tick_seconds: Time the last tick took.
+        durations: Times that ticks took, answers to commands included [s].
+        lateness: How far behind its due time each tick ended [s].
+        waits: How long commands waited for their tick [s].
     """
 
     ticks: int = 0
@@ -45,6 +60,9 @@ class Counters:
     busy_seconds: float = 0.0
     awake: int = 0
     last_tick_seconds: float = 0.0
+    durations: Times = field(default_factory=Times)
+    lateness: Times = field(default_factory=Times)
+    waits: Times = field(default_factory=Times)
 
 
 @dataclass(eq=False)
@@ -57,6 +75,7 @@ class _Group:
         simulator: Owned by the simulation thread.
         awake: Faces that were not asleep after the last tick.
         waiting: Faces, asleep or not, whose command lets go by itself: ticks until then.
+        ticks: Ticks stepped.
     """
 
     rig: Rig
@@ -64,6 +83,7 @@ class _Group:
     simulator: Simulator
     awake: set[str] = field(default_factory=set)
     waiting: dict[str, int] = field(default_factory=dict)
+    ticks: int = 0
 
     @property
     def runs(self) -> bool:
@@ -73,6 +93,7 @@ class _Group:
     def step(self) -> dict[str, Frame]:
         """Advance one tick and return the frames of the faces that moved."""
         frames = self.simulator.step()
+        self.ticks += 1
         self.awake = {face for face, frame in frames.items() if not frame.asleep}
         self.waiting = {face: left - 1 for face, left in self.waiting.items() if left > 0}
         return frames
@@ -86,8 +107,18 @@ class _Group:
 class EmbeddedRunner:
     """Every face in this process, on one simulation thread."""
 
-    def __init__(self, *, simulation_threads: int = 1, render_threads: int = 1) -> None:
+    def __init__(
+        self, *, simulation_threads: int = 1, render_threads: int = 1, capacity: float = 1.0
+    ) -> None:
+        """Make a runner; nothing runs before `start`.
+
+        Args:
+            simulation_threads: Live faces stepped at a time.
+            render_threads: Clips rendered at a time.
+            capacity: Share of a tick that awake faces may take before new ones are refused.
+        """
         self.counters = Counters()
+        self.load = Load(threads=simulation_threads, share=capacity)
         self._threads = simulation_threads
         self._mailbox = Mailbox()
         self._groups: list[_Group] = []
@@ -96,13 +127,14 @@ class EmbeddedRunner:
         self._pending_resets: set[str] = set()
         self._lock = threading.Lock()
         self._wake_reader: Callable[[], None] = _nothing
-        self._render_pool = ThreadPoolExecutor(render_threads, thread_name_prefix="render")
-        self._build_pool = ThreadPoolExecutor(1, thread_name_prefix="build")
+        self._render_pool = background_pool(render_threads, "render")
+        self._build_pool = background_pool(1, "build", steps=AWAITED)
         self._step_pool = ThreadPoolExecutor(simulation_threads, thread_name_prefix="step")
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
 
     def start(self) -> None:
-        """Start the simulation thread."""
+        """Start the simulation thread, and let threads change places more often."""
+        sys.setswitchinterval(min(sys.getswitchinterval(), _SWITCH_SECONDS))
         self._thread.start()
 
     def stop(self) -> None:
@@ -120,6 +152,10 @@ class EmbeddedRunner:
 
     # The verbs, on the event loop's thread.
 
+    async def admit(self) -> None:
+        """Return if there is room for one more face that moves."""
+        await self._mailbox.ask(lambda: self.load.admit(self._awake_count()))
+
     async def open(self, session: str, rig: Rig, timeline: Timeline, model: Model) -> None:
         """Make a face and apply the keyframes of `timeline`, whose times do not count."""
         spare = await self._spare(rig, model)
@@ -128,7 +164,8 @@ class EmbeddedRunner:
     async def apply(self, session: str, command: Keyframe | Move) -> int:
         """Put a command in the mailbox; return the tick at which it takes effect."""
         if isinstance(command, Keyframe):
-            return await self._mailbox.ask(lambda: self._apply(session, command))
+            asked = time.perf_counter()
+            return await self._mailbox.ask(lambda: self._obey(session, command, asked))
         model = (await self._mailbox.ask(lambda: self._group(session))).model
         spare = await self._spare(command.rig, model)
         return await self._mailbox.ask(lambda: self._move(session, command.rig, spare))
@@ -211,36 +248,63 @@ class EmbeddedRunner:
             self._mailbox.end()
 
     def _tick_until_stopped(self) -> None:
-        due = time.perf_counter()
-        while self._mailbox.answer_all(block=not self._awake()):
-            if not self._awake():
-                due = time.perf_counter() + _TICK_SECONDS
-                continue
+        due = 0.0  # When the tick that is next has to be done.
+        while True:
+            awake = self._runs()
             started = time.perf_counter()
-            self._step()
-            now = time.perf_counter()
-            self._count(now - started)
-            if now < due:
-                time.sleep(due - now)
-                due += _TICK_SECONDS
-            else:
-                self.counters.overruns += now - due > _TICK_SECONDS / 2
-                due = now + _TICK_SECONDS
+            if not self._mailbox.answer_all(block=not awake):
+                return
+            if not self._runs():
+                continue
+            if not awake:  # Nothing ran until now: time begins with what was just asked for.
+                started = time.perf_counter()
+                due = started + TICK_SECONDS
+            stepped = self._step()
+            due = self._pace(started, due, stepped)
 
-    def _awake(self) -> bool:
+    def _pace(self, started: float, due: float, stepped: int) -> float:
+        """Count a tick and sleep until the next one is to begin.
+
+        What is late is made up for by shorter sleeps, up to one tick; beyond that the faces slow
+        down instead of skipping.
+
+        Args:
+            started: When the tick began [s].
+            due: When it had to be done [s].
+            stepped: Faces that took its time; 0 if they do not tell what faces cost.
+
+        Returns:
+            When the next one has to be done [s].
+        """
+        now = time.perf_counter()
+        late = max(0.0, now - due)
+        self._count(now - started, late, stepped)
+        if now < due:
+            time.sleep(due - now)
+        return max(due, now - TICK_SECONDS) + TICK_SECONDS
+
+    def _runs(self) -> bool:
         return any(group.runs for group in self._groups)
 
-    def _step(self) -> None:
-        """Step every simulator that has a face awake, several at once when there are several."""
+    def _awake_count(self) -> int:
+        return sum(len(group.awake) for group in self._groups)
+
+    def _step(self) -> int:
+        """Step every simulator that has a face awake, several at once when there are several.
+
+        Returns:
+            How many faces took the time of the tick; 0 while a simulator is too new to tell.
+        """
         moving = [group for group in self._groups if group.runs]
         if len(moving) == 1:
             results = [self._step_group(moving[0])]
         else:
             results = list(self._step_pool.map(self._step_group, moving))
-        self.counters.awake = sum(len(group.awake) for group in moving)
+        self.counters.awake = self._awake_count()
         frames = {face: frame for result in results for face, frame in result.items()}
         if frames:
             self._publish(frames)
+        return len(frames) if all(group.ticks > _FIRST_TICKS for group in moving) else 0
 
     def _step_group(self, group: _Group) -> dict[str, Frame]:
         try:
@@ -275,11 +339,15 @@ class EmbeddedRunner:
             self._pending.update(frames)
         self._wake_reader()
 
-    def _count(self, seconds: float) -> None:
+    def _count(self, seconds: float, late: float, stepped: int) -> None:
         counters = self.counters
         counters.ticks += 1
+        counters.overruns += late > _LATE_SECONDS
         counters.busy_seconds += seconds
         counters.last_tick_seconds = seconds
+        counters.durations.add(seconds)
+        counters.lateness.add(late)
+        self.load.note(seconds, stepped)
 
     def _group(self, session: str) -> _Group:
         group = self._home.get(session)
@@ -322,6 +390,11 @@ class EmbeddedRunner:
             left = math.ceil((fade + keyframe.hold) * Simulator.TICKS_PER_SECOND) + 2
             group.waiting[session] = max(left, group.waiting.get(session, 0))
         return tick
+
+    def _obey(self, session: str, keyframe: Keyframe, asked: float) -> int:
+        """Apply what was asked for at `asked` [s], and note how long it waited."""
+        self.counters.waits.add(max(0.0, time.perf_counter() - asked))
+        return self._apply(session, keyframe)
 
     def _move(self, session: str, rig: Rig, spare: Simulator | None) -> int:
         old = self._group(session)

@@ -4,6 +4,7 @@ Refused
 ├── NotFound       404  no such session, rig, clip, …
 ├── Conflict       409  the thing is not in a state for this
 ├── Unprocessable  422  a body or a name that cannot be used
+├── AtCapacity     429  the machine moves as many faces as it can; comes with Retry-After
 └── Busy           503  a limit is reached; comes with Retry-After
 """
 
@@ -61,6 +62,16 @@ class Unprocessable(Refused):
     """A body, a field or a name that cannot be used."""
 
     status = 422
+
+
+class AtCapacity(Refused):
+    """The machine sustains no more; a later attempt may succeed."""
+
+    status = 429
+
+    def __init__(self, error: str, message: str, *, retry_after: int) -> None:
+        super().__init__(error, message)
+        self.headers = {"Retry-After": str(retry_after)}
 
 
 class Busy(Refused):

@@ -55,6 +55,14 @@ class Look:
 class Runner(Protocol):
     """The verbs by which the service drives faces; `view` looks without changing anything."""
 
+    async def admit(self) -> None:
+        """Return if there is room for one more face that moves; ask before `open` of a new one.
+
+        Raises:
+            AtCapacity: If those that are awake take as much of a tick as they may.
+            Busy: If the simulation has stopped.
+        """
+
     async def open(self, session: str, rig: Rig, timeline: Timeline, model: Model) -> None:
         """Make a face and apply the keyframes of `timeline`, whose times do not count."""
 

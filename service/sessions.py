@@ -6,7 +6,7 @@ import asyncio
 import secrets
 import time
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -25,6 +25,8 @@ from .viewers import Viewer
 _LOG = structlog.get_logger("sessions")
 _COMMANDS_KEPT = 20_000
 _BEATS_PER_SECOND = 5
+_SHIFTS = 4
+"""Parts of the sessions that are tended in turn, so that no tick answers for all of them."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,11 @@ class Session:
     _encoded: bytes | None = None
 
     @property
+    def shift(self) -> int:
+        """Which part of the sessions it is tended with."""
+        return hash(self.id) % _SHIFTS
+
+    @property
     def encoded(self) -> bytes:
         """The latest frame as bytes: encoded once, for every viewer."""
         if self._encoded is None:
@@ -85,6 +92,11 @@ class Session:
         """Send an event to every viewer."""
         for viewer in self.viewers:
             viewer.offer(event)
+
+    def to_row(self) -> dict[str, Any]:
+        """Return what the store keeps of it."""
+        held = held_to_json(self.held)
+        return {"id": self.id, "rig": self.rig.id, "held": held, "used": self.used}
 
     def describe(self) -> dict[str, object]:
         """Return what the API says of it."""
@@ -159,9 +171,9 @@ class Sessions:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         for session in self._live.values():
-            self._save(session)
             for viewer in session.viewers:
                 viewer.end(1012, "the service stops")
+        await self._save(list(self._live.values()))
 
     @property
     def viewer_count(self) -> int:
@@ -185,21 +197,26 @@ class Sessions:
         """Make a new session.
 
         Raises:
+            AtCapacity: If the faces that are awake take as much of a tick as they may.
             Busy: If there are as many as are allowed.
         """
+        session_id, store = secrets.token_hex(16), self._store
         async with self._opening:
-            if len(self._store.sessions()) >= self._limit:
+            if await store.aside(store.session_count) >= self._limit:
                 message = f"at most {self._limit} sessions are open at once; close one first"
                 raise Busy("too_many_sessions", message, retry_after=10)
-            row = self._store.add_session(secrets.token_hex(16), rig=rig.id, model=asdict(model))
+            await self._runner.admit()
             try:
+                row = await store.aside(
+                    lambda: store.add_session(session_id, rig=rig.id, model=asdict(model))
+                )
                 return await self._wake(row, rig, model)
             except BaseException:
-                self._store.remove_session(row.id)
+                await asyncio.shield(self._forget(session_id))
                 raise
 
     async def get(self, session_id: str) -> Session:
-        """Return a session, woken from the store if need be.
+        """Return a session, woken from the store if need be, which is never refused.
 
         Raises:
             NotFound: If there is none of that id.
@@ -218,9 +235,10 @@ class Sessions:
             NotFound: If there is none of that id.
         """
         session = await self.get(session_id)
+        # First the row: who asks meanwhile must not wake the session from it again.
+        await self._forget(session_id)
         if self._live.pop(session_id, None) is None:
             raise _unknown(session_id)
-        self._store.remove_session(session_id)
         for viewer in session.viewers:
             viewer.end(1000, "the session was closed")
         await self._runner.close(session_id)
@@ -302,23 +320,25 @@ class Sessions:
 
     async def _beat(self) -> None:
         """Send states, repeat sleeping frames, save, and close what nobody uses."""
-        beat = 0
+        turn = 0
         while True:
-            await asyncio.sleep(1 / _BEATS_PER_SECOND)
-            beat += 1
+            await asyncio.sleep(1 / (_BEATS_PER_SECOND * _SHIFTS))
+            turn += 1
+            beat, shift = divmod(turn, _SHIFTS)
             each_second = beat % _BEATS_PER_SECOND == 0
             # Side by side: each one waits for the simulation thread's next tick.
-            await asyncio.gather(
-                *(self._tend(session, each_second) for session in list(self._live.values()))
-            )
-            if beat % (60 * _BEATS_PER_SECOND) == 0:
-                self._forget_sleepers()
+            sessions = [live for live in self._live.values() if live.shift == shift]
+            await asyncio.gather(*(self._tend(session, each_second) for session in sessions))
+            if each_second:
+                await self._save_changed(sessions)
+            if turn % (60 * _BEATS_PER_SECOND * _SHIFTS) == 0:
+                await self._forget_sleepers()
 
-    def _forget_sleepers(self) -> None:
+    async def _forget_sleepers(self) -> None:
         """Forget the stored sessions that nobody woke; a database that is busy has its next try."""
-        used_before = time.time() - self._idle_seconds
+        used_before, live, store = time.time() - self._idle_seconds, list(self._live), self._store
         try:
-            self._store.remove_idle_sessions(used_before, but=list(self._live))
+            await store.aside(lambda: store.remove_idle_sessions(used_before, but=live))
         except Exception:
             _LOG.exception("idle sessions could not be forgotten")
 
@@ -341,19 +361,33 @@ class Sessions:
     async def _each_second(self, session: Session) -> None:
         for viewer in session.viewers:
             viewer.repeat_frame()
-        if session.unsaved:
-            self._save(session)
         if not session.viewers and time.time() - session.used > self._idle_seconds:
             _LOG.info("a session that nobody uses is closed", session=session.id)
             await self.close(session.id)
 
-    def _save(self, session: Session) -> None:
-        held = held_to_json(session.held)
-        self._store.keep_session(session.id, rig=session.rig.id, held=held, used=session.used)
-        session.unsaved = False
+    async def _save_changed(self, sessions: Sequence[Session]) -> None:
+        """Save those that were commanded; a database that is busy has its next try."""
+        changed = [session for session in sessions if session.unsaved]
+        for session in changed:
+            session.unsaved = False  # What comes while they are saved is saved the next time.
+        try:
+            await self._save(changed)
+        except Exception:
+            for session in changed:
+                session.unsaved = True
+            _LOG.exception("sessions could not be saved", sessions=len(changed))
+
+    async def _save(self, sessions: Sequence[Session]) -> None:
+        store, rows = self._store, [session.to_row() for session in sessions]
+        if rows:
+            await store.aside(lambda: store.keep_sessions(rows))
+
+    async def _forget(self, session_id: str) -> None:
+        store = self._store
+        await store.aside(lambda: store.remove_session(session_id))
 
     async def _restore(self, session_id: str) -> Session:
-        row = self._store.session(session_id)
+        row = await self._store.aside(lambda: self._store.session(session_id))
         if row is None:
             raise _unknown(session_id)
         rig = await self._rigs.get(row.rig)

@@ -25,6 +25,13 @@ def _data_folder() -> Path:
     return _user_folder("XDG_DATA_HOME", ".local/share")
 
 
+def _cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 class Settings(BaseSettings):
     """Everything that can be set, from the environment or by keyword."""
 
@@ -96,8 +103,15 @@ class Settings(BaseSettings):
         allow_inf_nan=False,
         description="Requests and socket messages a second accepted from one client.",
     )
+    capacity_share: float = Field(
+        default=0.85,
+        gt=0,
+        allow_inf_nan=False,
+        description="Share of a tick that faces that move may take, as measured, before new "
+        "sessions are refused; 1000 refuses none.",
+    )
     simulation_threads: int = Field(
-        default_factory=lambda: max(1, (os.cpu_count() or 2) // 2),
+        default_factory=_cores,
         ge=1,
         description="Threads that live faces are spread over.",
     )

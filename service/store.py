@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
@@ -26,6 +28,7 @@ from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, sessionmaker
 from sqlalchemy.pool import StaticPool
 
 Row = TypeVar("Row", bound="Table")
+Answer = TypeVar("Answer")
 
 _BUSY_TIMEOUT_MS = 5000
 
@@ -116,9 +119,21 @@ class Store:
                 "RISORIUS_DATA_DIR to a folder that can be written, or RISORIUS_DATABASE_URL."
             ) from error
         self._session = sessionmaker(self.engine, expire_on_commit=False)
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="store")
+
+    async def aside(self, call: Callable[[], Answer]) -> Answer:
+        """Return what `call` returns, called in order on the store's own thread.
+
+        A commit takes parts of a millisecond, and now and then waits for the disk: nothing that
+        the event loop should wait for.
+        """
+        if isinstance(self.engine.pool, StaticPool):
+            return call()  # One connection for all: two transactions on it would be one.
+        return await asyncio.get_running_loop().run_in_executor(self._thread, call)
 
     def close(self) -> None:
-        """Close every connection."""
+        """Finish what was asked for and close every connection."""
+        self._thread.shutdown(wait=True)
         self.engine.dispose()
 
     # Rigs.
@@ -193,14 +208,18 @@ class Store:
             session.add(row)
         return row
 
-    def keep_session(self, session_id: str, *, rig: str, held: Sequence[Any], used: float) -> None:
-        """Keep what a session holds now."""
+    def keep_sessions(self, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Keep what sessions hold now, in one transaction; those that were closed stay so.
+
+        Args:
+            rows: Of each its `id`, `rig`, `held` and `used`.
+        """
         with self._session.begin() as session:
-            session.execute(
-                update(SessionRow)
-                .where(SessionRow.id == session_id)
-                .values(rig=rig, held=list(held), used=used)
-            )
+            for row in rows:
+                values = {name: row[name] for name in ("rig", "held", "used")}
+                session.execute(
+                    update(SessionRow).where(SessionRow.id == row["id"]).values(**values)
+                )
 
     def remove_session(self, session_id: str) -> None:
         """Forget a session."""
@@ -216,6 +235,11 @@ class Store:
     def session(self, session_id: str) -> SessionRow | None:
         """Return the session of that id."""
         return self._get(SessionRow, session_id)
+
+    def session_count(self) -> int:
+        """Return how many sessions are kept."""
+        with self._session() as session:
+            return session.scalar(select(func.count()).select_from(SessionRow)) or 0
 
     def sessions(self) -> Sequence[SessionRow]:
         """Return the sessions, oldest first."""

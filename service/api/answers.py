@@ -28,7 +28,7 @@ _MEANINGS = {
     413: "The body is too large.",
     421: "The service does not answer for this host.",
     422: "A name or a value cannot be used.",
-    429: "Too many requests.",
+    429: "Too many requests; Retry-After says when to ask again.",
     503: "A limit is reached, or the service warms up.",
 }
 # Written out, because FastAPI would give a model the media type of the route's good answer.
@@ -36,6 +36,19 @@ ERROR_CONTENT = {"application/json": {"schema": ErrorBody.model_json_schema()}}
 ERRORS: dict[int | str, dict[str, Any]] = {
     status: {"description": meaning, "content": ERROR_CONTENT}
     for status, meaning in _MEANINGS.items()
+}
+AT_CAPACITY: dict[int | str, dict[str, Any]] = {
+    429: {
+        "description": "Too many requests, or the faces that move take as much of a tick as they "
+        "may (`at_capacity`); live ones keep their rate.",
+        "content": ERROR_CONTENT,
+        "headers": {
+            "Retry-After": {
+                "description": "Seconds after which to ask again.",
+                "schema": {"type": "integer"},
+            }
+        },
+    }
 }
 GLB_CONTENT: dict[int | str, dict[str, Any]] = {
     200: {

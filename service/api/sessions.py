@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Any
 
 from fastapi import APIRouter, Response
@@ -15,14 +14,14 @@ from ..commands import controls_keyframe, live_model, play_emotion
 from ..components import Components, Parts
 from ..errors import refused_by_engine
 from ..sessions import Session
-from .answers import GLB_CONTENT, GlbResponse, Textured
+from .answers import AT_CAPACITY, GLB_CONTENT, GlbResponse, Textured
 
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 
 
-@router.post("", status_code=201)
+@router.post("", status_code=201, responses=AT_CAPACITY)
 async def open_session(parts: Parts, response: Response, body: NewSession) -> dict[str, Any]:
-    """Open a session: a face at rest, until somebody commands it."""
+    """Open a session, a face at rest until somebody commands it; 429 while no more can move."""
     rig = await parts.rigs.get(body.rig)
     session = await parts.sessions.open(rig, live_model(body.model, rig))
     response.headers["Location"] = f"/api/sessions/{session.id}"
@@ -42,7 +41,7 @@ async def session_glb(session_id: str, parts: Parts, textured: Textured = True) 
     view = await parts.sessions.view(session)
     rig = session.rig
     maps = await parts.rigs.textures(rig) if textured else None
-    data = await asyncio.to_thread(face_to_glb, rig, view.frame, textures=maps)
+    data = await parts.rigs.written(lambda: face_to_glb(rig, view.frame, textures=maps))
     return GlbResponse(data, headers={"Cache-Control": "no-store"})
 
 

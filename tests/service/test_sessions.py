@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
 
 import pytest
@@ -264,5 +265,5 @@ def test_a_busy_database_does_not_end_the_beat(
 
     sessions = parts_of(client).sessions
     monkeypatch.setattr(sessions._store, "remove_idle_sessions", busy)
-    sessions._forget_sleepers()
+    asyncio.run(sessions._forget_sleepers())
     assert not any(task.done() for task in sessions._tasks)

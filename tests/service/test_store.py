@@ -29,7 +29,7 @@ def test_the_file_is_set_up_for_many_readers(store: Store) -> None:
 def test_idle_sessions_are_forgotten_but_live_ones(store: Store) -> None:
     for name, used in (("old", 10.0), ("old-but-live", 10.0), ("new", 30.0)):
         store.add_session(name, rig="standard", model={})
-        store.keep_session(name, rig="standard", held=[], used=used)
+        store.keep_sessions([{"id": name, "rig": "standard", "held": [], "used": used}])
     store.remove_idle_sessions(20.0, but=["old-but-live"])
     assert {row.id for row in store.sessions()} == {"old-but-live", "new"}
 
