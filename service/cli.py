@@ -1,6 +1,6 @@
 """The command line: from `serve` to `warm`.
 
-Every command ends with 0, or with 2 and one clear sentence.
+Every command ends with 0, or with 2 and one clear sentence; `soak` with 1 where a figure is bad.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ app = typer.Typer(
 )
 _console = Console(stderr=True, highlight=False)
 _REFUSED = 2
+_FAILED = 1
 
 
 def main() -> None:
@@ -248,6 +249,35 @@ def bench(
         typer.echo(json.dumps(figures, indent=2, allow_nan=False))
     else:
         Console(highlight=False).print(table(figures))
+
+
+@app.command()
+def soak(
+    minutes: Annotated[float, typer.Option(min=0.05, help="How long.")] = 5.0,
+    share: Annotated[
+        float, typer.Option(min=0.01, max=2.0, help="Of the measured capacity, kept moving.")
+    ] = 0.8,
+    url: Annotated[
+        str | None, typer.Option(help="A running service that nobody else uses; starts one if not.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Load the service for some minutes; end with 1 if ticks are late or memory grows."""
+    from .soak import soak as run_soak
+    from .soak import table, verdict
+    from .soak_client import SoakRefused
+
+    try:
+        with _console.status("starting") as status:
+            figures = run_soak(minutes=minutes, share=share, url=url, show=status.update)
+    except SoakRefused as refused:
+        _refuse(f"The soak cannot be run: {refused}")
+    if as_json:
+        typer.echo(json.dumps(figures, indent=2, allow_nan=False))
+    else:
+        Console(highlight=False).print(table(figures))
+    if verdict(figures):
+        raise typer.Exit(_FAILED)
 
 
 @app.command()
