@@ -65,6 +65,8 @@ def take_short_turns() -> bool:
     if sys.platform != "linux" or number is None:
         return False
     nice = os.getpriority(os.PRIO_PROCESS, threading.get_native_id())
+    if nice < 0:
+        return False  # The flag would take that privilege from the threads of live faces.
     size, slice_ = _ATTRIBUTES.size, _SHORT_SLICE_NANOSECONDS
     attributes = _ATTRIBUTES.pack(size, 0, _NOT_FOR_CHILDREN, nice, 0, slice_, 0, 0)
     try:

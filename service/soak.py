@@ -30,6 +30,7 @@ MOST_OVERRUNS = 0.001
 """Share of ticks that may be late by more than half a tick."""
 MOST_GROWTH_BYTES = 16e6
 """Growth of memory in the later two thirds that counts as none: allocators keep some back."""
+_MEMORY_PARTS = 8
 _SEED = 1
 _MOST_SESSIONS = 200
 _SETTLE_SECONDS = 3.0
@@ -418,7 +419,8 @@ def _of_load(tally: _Tally) -> dict[str, Any]:
 def memory_trend(samples: list[tuple[float, float]]) -> tuple[float, float]:
     """Return slope [bytes/s] and growth [bytes] of a line through the later two thirds.
 
-    The first third is left out: caches fill, and allocators take what they keep.
+    The first third is left out: caches fill, and allocators take what they keep. Of each eighth of
+    the rest only the least counts: what a clip takes and gives back is no growth.
 
     Args:
         samples: Moments [s] and sizes [bytes], oldest first.
@@ -426,9 +428,10 @@ def memory_trend(samples: list[tuple[float, float]]) -> tuple[float, float]:
     later = np.array(samples[len(samples) // 3 :])
     if len(later) < 3:
         return 0.0, 0.0
-    moments = later[:, 0] - later[0, 0]
-    slope = float(np.polyfit(moments, later[:, 1], 1)[0])
-    return slope, slope * float(moments[-1])
+    parts = np.array_split(later, min(_MEMORY_PARTS, len(later)))
+    least = np.array([part[part[:, 1].argmin()] for part in parts])
+    slope = float(np.polyfit(least[:, 0] - later[0, 0], least[:, 1], 1)[0])
+    return slope, slope * float(later[-1, 0] - later[0, 0])
 
 
 async def _end(task: asyncio.Task[Any]) -> None:

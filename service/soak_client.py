@@ -28,6 +28,8 @@ from .timing import quantile_of
 _CALLS_AT_ONCE = 4
 _TIMEOUT_SECONDS = 300.0
 _READY_SECONDS = 300.0
+_IDLE_SECONDS = 2.0
+"""After which a connection is not used again: the service closes idle ones after five."""
 
 
 class SoakRefused(Exception):
@@ -136,7 +138,10 @@ class Client:
         if connection is None:
             connection = http.client.HTTPConnection(*self._place, timeout=_TIMEOUT_SECONDS)
             self._own.connection = connection
+            self._own.used = 0.0
             self._connections.append(connection)
+        if time.monotonic() - self._own.used > _IDLE_SECONDS:
+            connection.close()  # The request opens it again.
         data = None if body is None else json.dumps(body)
         headers = {} if data is None else {"Content-Type": "application/json"}
         started = time.perf_counter()
@@ -145,8 +150,9 @@ class Client:
             answer = connection.getresponse()
             text = answer.read()
         except BaseException:
-            connection.close()  # The next call opens it again.
+            connection.close()
             raise
+        self._own.used = time.monotonic()
         seconds = time.perf_counter() - started
         kind = answer.headers.get("content-type", "")
         read = json.loads(text) if text and "json" in kind else text.decode("utf-8", "replace")

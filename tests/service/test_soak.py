@@ -64,6 +64,8 @@ def test_memory_that_grows_is_seen_and_a_filling_cache_is_not() -> None:
     assert growth == pytest.approx(199e5, rel=0.01)
     filling = [(float(second), 3e8 + 1e6 * min(second, 90)) for second in range(300)]
     assert memory_trend(filling)[1] == pytest.approx(0.0, abs=1.0)
+    clips = [(float(second), 3e8 + 1e8 * (second % 30 > 26)) for second in range(300)]
+    assert memory_trend(clips)[1] == pytest.approx(0.0, abs=1.0)
     assert memory_trend([]) == (0.0, 0.0)
 
 
