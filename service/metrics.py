@@ -71,7 +71,7 @@ class Metrics:
             self.watch_times(name, help_text, times)
         self.gauge(
             "face_cost_seconds",
-            "Smoothed time of one thread that an awake face takes of a tick.",
+            "Smoothed time of a tick over the faces that move in it.",
             lambda: load.face_seconds,
         )
         self.gauge(

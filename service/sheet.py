@@ -29,6 +29,8 @@ _TIMEOUT_MS = 240_000
 """A first picture waits until the person's maps are baked."""
 _NO_CONTENT = 204
 _LABEL_SHARE = 0.09
+_NO_LIMIT = 1000.0
+"""Share of a tick that faces may take: nobody watches these live."""
 _ROOM = 1.34
 """Side of the page against a picture's: the page frames the whole head, a picture its face."""
 _ABOVE = 0.12
@@ -107,7 +109,9 @@ def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
     if not (Settings().viewer_dir / "index.html").is_file():
         raise SheetRefused("The viewer is not built: run `npm ci && npm run build` in static/.")
     with tempfile.TemporaryDirectory(prefix="risorius-sheet-") as folder:
-        settings = Settings(data_dir=Path(folder), host="127.0.0.1", api_keys=())
+        settings = Settings(
+            data_dir=Path(folder), host="127.0.0.1", api_keys=(), capacity_share=_NO_LIMIT
+        )
         try:
             with running(create_app(settings), settings) as url, chromium() as browser:
                 side = plan.size if plan.whole else round(plan.size * _ROOM)

@@ -43,7 +43,7 @@ def test_the_cost_follows_what_is_measured() -> None:
     load = loaded(face_share=0.5)
     with pytest.raises(AtCapacity):
         load.admit(1)
-    for _ in range(1000):
+    for _ in range(5000):
         load.note(4 * 0.1 * TICK_SECONDS, 4)
     load.admit(4)
     assert load.share_of(4) == pytest.approx(0.4, rel=0.01)
@@ -66,6 +66,30 @@ def test_a_tick_that_took_seconds_is_soon_forgotten() -> None:
     for _ in range(600):
         load.note(0.1 * TICK_SECONDS, 1)
     load.admit(4)
+
+
+def test_faces_that_are_stepped_in_a_batch_cost_little_more_than_one() -> None:
+    load = loaded(face_share=0.6)
+    with pytest.raises(AtCapacity):
+        load.admit(1)
+    for _ in range(100):
+        load.note(0.61 * TICK_SECONDS, 2)
+    load.admit(2)
+    load.admit(10)
+    assert load.share_of(11) == pytest.approx(0.7, rel=0.02)
+
+
+def test_what_was_too_slow_once_is_tried_again_after_a_minute() -> None:
+    load = loaded(face_share=0.1)
+    for _ in range(100):
+        load.note(1.5 * TICK_SECONDS, 2)
+    for _ in range(3000):
+        load.note(0.1 * TICK_SECONDS, 1)
+    with pytest.raises(AtCapacity):
+        load.admit(1)
+    for _ in range(1000):
+        load.note(0.1 * TICK_SECONDS, 1)
+    load.admit(1)
 
 
 def test_ticks_without_faces_say_nothing_of_their_cost() -> None:
@@ -106,6 +130,7 @@ def move(client: TestClient, session: str) -> int:
 def test_a_full_service_refuses_new_sessions_and_wakes_old_ones(full: TestClient) -> None:
     first, second = open_session(full), open_session(full)
     assert move(full, first) == 200
+    until(lambda: full.get("/api/health").json()["pace"]["load"] > 0)
     refused = full.post("/api/sessions", json={})
     assert refused.status_code == 429
     assert int(refused.headers["Retry-After"]) > 0
@@ -128,7 +153,7 @@ def test_a_stored_session_is_woken_at_capacity(tmp_path: Path) -> None:
         stored, moving = open_session(client), open_session(client)
     with TestClient(create_app(settings), base_url=LOCAL) as client:
         assert move(client, moving) == 200
-        until(lambda: client.get("/api/health").json()["pace"]["ticks"] > 10)
+        until(lambda: client.get("/api/health").json()["pace"]["load"] > 0)
         assert client.post("/api/sessions", json={}).status_code == 429
         assert client.get(f"/api/sessions/{stored}").status_code == 200
 
@@ -146,9 +171,9 @@ def test_the_measured_cost_decides(client: TestClient, monkeypatch: pytest.Monke
     monkeypatch.setattr(load, "note", lambda *_: None)
     moving = open_session(client)
     assert move(client, moving) == 200
-    monkeypatch.setattr(load, "face_seconds", 10 * TICK_SECONDS)
+    monkeypatch.setattr(load, "_seconds", lambda awake: 10 * awake * TICK_SECONDS)
     assert client.post("/api/sessions", json={}).status_code == 429
-    monkeypatch.setattr(load, "face_seconds", 0.001 * TICK_SECONDS)
+    monkeypatch.setattr(load, "_seconds", lambda awake: 0.001 * awake * TICK_SECONDS)
     answer = client.post("/api/sessions", json={})
     assert answer.status_code == 201
     for session in (moving, answer.json()["id"]):
