@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from .cage import Cage, mirrored
-from .graded import smallest_angles
+from .geometry import best_fan
 from .patches import HalfCage
 from .subdivision import Limit
 
@@ -103,20 +103,7 @@ def _cut(
     if len(corners) == 4 and len(places) == 2 and places[1] - places[0] == 3:
         low, high = places
         return [tuple(outline[low : high + 1]), tuple(outline[high:] + outline[: low + 1])]
-    return _best_fan(outline, half)
-
-
-def _best_fan(outline: list[str], half: HalfCage) -> list[tuple[str, ...]]:
-    """Return the fan of triangles over an outline whose smallest angle is the largest."""
-    best: tuple[float, list[tuple[str, ...]]] = (-1.0, [])
-    for start in range(len(outline)):
-        ring = outline[start:] + outline[:start]
-        fan: list[tuple[str, ...]] = [
-            (ring[0], first, second) for first, second in pairwise(ring[1:])
-        ]
-        least = min(
-            float(smallest_angles(np.array([half.points[name] for name in piece]))) for piece in fan
-        )
-        if least > best[0]:
-            best = (least, fan)
-    return best[1]
+    is_middle = np.isin(np.arange(len(outline)), places)
+    points = np.array([half.points[name] for name in outline])
+    fan = best_fan(np.arange(len(outline)), is_middle, points)
+    return [tuple(outline[place] for place in piece) for piece in fan]

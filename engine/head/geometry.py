@@ -1,4 +1,4 @@
-"""Small geometry shared by skin and parts: normals, spheres, pieces joined."""
+"""Small geometry shared by skin and parts: normals, angles, fans, pieces joined."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 
 Mesh = tuple[FloatArray, IntArray]
 """Vertices [mm], shape (v, 3), and triangles, shape (t, 3)."""
@@ -46,6 +46,36 @@ def triangle_areas(vertices: FloatArray, triangles: IntArray) -> FloatArray:
     """Return the areas [mm^2] of triangles, shape (t,)."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
+
+
+def smallest_angles(corners: FloatArray) -> FloatArray:
+    """Return the smallest angle of triangles given by their corners (..., 3, 3), radians."""
+    to_next = np.roll(corners, -1, axis=-2) - corners
+    to_last = np.roll(corners, 1, axis=-2) - corners
+    product = np.linalg.norm(to_next, axis=-1) * np.linalg.norm(to_last, axis=-1)
+    cosine = (to_next * to_last).sum(axis=-1) / np.maximum(product, 1e-12)
+    return np.asarray(np.arccos(np.clip(cosine, -1, 1)).min(axis=-1))
+
+
+def best_fan(outline: IntArray, is_middle: BoolArray, points: FloatArray) -> IntArray:
+    """Return the fan of triangles over an outline whose smallest angle is the largest.
+
+    None has a triangle of an edge's ends and its middle, which would have no area on the textures.
+
+    Args:
+        outline: Vertices in order, shape (n,).
+        is_middle: Which of them is the middle of an edge whose ends are beside it, shape (n,).
+        points: Where they are [mm], shape (n, 3).
+
+    Returns:
+        Vertices of the triangles, shape (n - 2, 3).
+    """
+    size = len(outline)
+    starts = np.flatnonzero(~np.roll(is_middle, 1) & ~np.roll(is_middle, -1))
+    rings = (starts[:, None] + np.arange(size)) % size
+    fans = np.stack([rings[:, [0, k, k + 1]] for k in range(1, size - 1)], axis=1)
+    worst = smallest_angles(points[fans]).min(axis=1)
+    return np.asarray(outline[fans[int(np.argmax(worst))]])
 
 
 def without_slivers(vertices: FloatArray, triangles: IntArray) -> IntArray:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from .cage import Cage, mirrored_faces
+from .geometry import best_fan, smallest_angles
 from .patches.ear import rim_points
 from .subdivision import Level
 from .topology import Topology
@@ -58,7 +59,7 @@ def graded_triangles(
     ]
     for face in np.flatnonzero(stitched & left):
         outline = np.array(_outline(topology, int(face), edge_is_fine))
-        fan = _best_fan(outline, outline >= topology.vertex_count, positions)
+        fan = best_fan(outline, outline >= topology.vertex_count, positions[outline])
         pieces.append((fan, np.full(len(fan), coarse.parents[face])))
     triangles = np.vstack([piece[0] for piece in pieces])
     parents = np.concatenate([piece[1] for piece in pieces])
@@ -94,26 +95,3 @@ def _outline(topology: Topology, face: int, edge_is_fine: BoolArray) -> list[int
         if edge_is_fine[edge]:
             outline.append(topology.vertex_count + int(edge))
     return outline
-
-
-def _best_fan(outline: IntArray, is_middle: BoolArray, positions: FloatArray) -> IntArray:
-    """Return the fan over an outline whose smallest angle is the largest.
-
-    None has a triangle of an edge's ends and its middle, which would have no area on the textures.
-    """
-    size = len(outline)
-    steps = np.arange(size)
-    starts = np.flatnonzero(~np.roll(is_middle, 1) & ~np.roll(is_middle, -1))
-    ring = outline[(starts[:, None] + steps) % size]
-    fans = np.stack([ring[:, [0, k, k + 1]] for k in range(1, size - 1)], axis=1)
-    worst = smallest_angles(positions[fans]).min(axis=1)
-    return np.asarray(fans[int(np.argmax(worst))])
-
-
-def smallest_angles(corners: FloatArray) -> FloatArray:
-    """Return the smallest angle of triangles given by their corners (..., 3, 3), radians."""
-    to_next = np.roll(corners, -1, axis=-2) - corners
-    to_last = np.roll(corners, 1, axis=-2) - corners
-    product = np.linalg.norm(to_next, axis=-1) * np.linalg.norm(to_last, axis=-1)
-    cosine = (to_next * to_last).sum(axis=-1) / np.maximum(product, 1e-12)
-    return np.asarray(np.arccos(np.clip(cosine, -1, 1)).min(axis=-1))

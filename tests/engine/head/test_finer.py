@@ -9,8 +9,7 @@ from scipy.spatial import cKDTree
 from engine.arrays import FloatArray, IntArray
 from engine.head.cage import Cage
 from engine.head.finer import LADDERS
-from engine.head.geometry import vertex_normals
-from engine.head.graded import smallest_angles
+from engine.head.geometry import smallest_angles, vertex_normals
 from engine.head.standard import Sculpture, sculpt
 
 TALLEST = {"forehead": 11.5, "glabella": 6.5}

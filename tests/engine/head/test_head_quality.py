@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.head.graded import smallest_angles
+from engine.head.geometry import smallest_angles
 from engine.head.skin import LEVELS, SkinMesh, skin_mesh
 from engine.head.standard import Sculpture
 from engine.head.topology import Topology

@@ -7,8 +7,7 @@ import pytest
 
 from engine.errors import UnknownName
 from engine.head import Head, standard_head
-from engine.head.geometry import triangle_areas
-from engine.head.graded import smallest_angles
+from engine.head.geometry import smallest_angles, triangle_areas
 from engine.head.hairline import HIDDEN_SCALP, distance_inside, inside_outline
 from engine.head.topology import Topology, boundary_loops, components
 
