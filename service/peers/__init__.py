@@ -1,8 +1,9 @@
-"""Peers: the same forces written with other tools, to measure the engine's kernel against."""
+"""Peers: the same forces written with other tools, to measure the engine's kernels against."""
 
 from .common import Integrator, Peer
 from .every import every_peer
 from .kernel_peer import KernelPeer
+from .lanes_peer import LanesPeer
 from .timing import compare
 
-__all__ = ["Integrator", "KernelPeer", "Peer", "compare", "every_peer"]
+__all__ = ["Integrator", "KernelPeer", "LanesPeer", "Peer", "compare", "every_peer"]

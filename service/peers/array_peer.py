@@ -17,7 +17,7 @@ import numpy as np
 from engine.arrays import Float32Array, FloatArray
 from engine.dynamics import Skull, Tissue
 
-from .common import MOST_LANES, Blocks, Integrator, Tables, blocks_of
+from .common import INTEGRATORS, MOST_LANES, Blocks, Integrator, Tables, blocks_of
 
 _CHUNK = 16_384
 
@@ -45,6 +45,8 @@ class _Block(NamedTuple):
 
 class ArrayPeer(ABC):
     """A peer in array operations, without the way between nodes and rows."""
+
+    integrators = INTEGRATORS
 
     _tables: Tables
     _layout: Blocks

@@ -29,6 +29,8 @@ Integrator = Literal["rk2", "verlet"]
 EVALUATIONS: dict[Integrator, int] = {"rk2": 2, "verlet": 1}
 """Force evaluations of a step."""
 
+INTEGRATORS: tuple[Integrator, ...] = tuple(EVALUATIONS)
+
 MOST_LANES = 16
 """Faces side by side: float32 numbers in the widest vector register, and in a cache line."""
 
@@ -51,6 +53,10 @@ class Peer(Protocol):
     @property
     def unavailable(self) -> str | None:
         """Why it cannot run here, or None."""
+
+    @property
+    def integrators(self) -> tuple[Integrator, ...]:
+        """Which steps it has."""
 
     def prepare(self, tissue: Tissue, skull: Skull, faces: int) -> None:
         """Build and compile what is needed for `faces` faces at rest.

@@ -1,7 +1,6 @@
-"""The engine's own kernels in the form of a peer, so that they do the same work to be measured.
+"""The reference kernels in the form of a peer, so that they do the same work to be measured.
 
-One face after another in float64, as a simulator steps them. Position Verlet, which the engine has
-not, is written around its forces.
+One face after another in float64, as a simulator steps faces alone.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from engine.dynamics import (
     workspace,
 )
 
-from .common import Integrator, installed_version
+from .common import INTEGRATORS, Integrator, installed_version
 
 
 class _Face(NamedTuple):
@@ -36,10 +35,11 @@ class _Face(NamedTuple):
 
 
 class KernelPeer:
-    """The engine's kernels, float64; Verlet in NumPy around their forces."""
+    """The engine's kernels for one face, float64."""
 
-    name = "risorius"
+    name = "alone (float64)"
     unavailable: str | None = None
+    integrators = INTEGRATORS
 
     _tissue: Tissue
     _pull: Pull
@@ -94,24 +94,13 @@ class KernelPeer:
     def substeps(self, count: int, dt: float, integrator: Integrator) -> None:
         """See `Peer`."""
         for face in self._faces:
-            if integrator == "verlet":
-                for _ in range(count):
-                    self._verlet(face, dt)
-                continue
-            tableau, tissue = TABLEAUS["rk2"], self._tissue
+            tableau, tissue = TABLEAUS[integrator], self._tissue
             advance(face.x, face.v, count, dt, tableau, tissue, face.skull, self._pull, face.work)
 
     def _force(self, face: _Face, x: FloatArray) -> FloatArray:
         force = face.work.force
         static_forces(x, self._tissue, face.skull, self._pull, face.work.scratch, force)
         return force
-
-    def _verlet(self, face: _Face, dt: float) -> None:
-        drag = 0.5 * dt * self._tissue.damping
-        face.x[:] += 0.5 * dt * face.v
-        kick = dt * self._tissue.inverse_mass * self._force(face, face.x)
-        face.v[:] = ((1.0 - drag) * face.v + kick) / (1.0 + drag)
-        face.x[:] += 0.5 * dt * face.v
 
 
 def without_contact(tissue: Tissue) -> Tissue:

@@ -26,6 +26,7 @@ from engine.dynamics import Skull, Tissue
 
 from .common import (
     EVALUATIONS,
+    INTEGRATORS,
     MOST_LANES,
     Blocks,
     Integrator,
@@ -41,6 +42,7 @@ class TaichiPeer:
     """Taichi on the processor, float32."""
 
     name = "taichi"
+    integrators = INTEGRATORS
 
     _tables: Tables
     _layout: Blocks

@@ -1,4 +1,4 @@
-"""How long the engine's kernel and each peer take for the same forces and steps, side by side."""
+"""How long the engine's kernels and each peer take for the same forces and steps, side by side."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from engine import Keyframe, Rig, Simulator
 from engine.arrays import FloatArray
 from engine.dynamics import Skull, Tissue, add_basis_forces
 
-from .common import EVALUATIONS, Peer
+from .common import EVALUATIONS, Integrator, Peer
 from .every import every_peer
 from .kernel_peer import KernelPeer
+from .lanes_peer import LanesPeer
 
 FACES = (1, 16, 64)
 """Numbers of faces that are measured: alone, one block of lanes, several blocks."""
@@ -31,7 +32,7 @@ class Moving(NamedTuple):
     """A face in motion, as a peer takes it.
 
     Attributes:
-        tissue, skull: What it is made of; the load has the muscles' forces.
+        tissue, skull: What it is made of; the load has the muscles' forces, and nothing travels.
         x, v: Positions, mm, and velocities, mm/s, shape (3, nodes).
         dt: Seconds of a substep of the rig.
     """
@@ -62,7 +63,7 @@ def moving_face(rig: Rig) -> Moving:
     add_basis_forces(assembly.basis, assembly.tissue.arrays.grip, activations, load)
     return Moving(
         assembly.tissue.arrays,
-        face.skull._replace(load=load),
+        face.skull._replace(load=load, travel=np.zeros_like(face.skull.travel)),
         face.x,
         face.v,
         1.0 / (Simulator.TICKS_PER_SECOND * assembly.substeps),
@@ -77,25 +78,25 @@ def compare(
     repeats: int = 5,
     seconds: float = 0.1,
 ) -> list[dict[str, Any]]:
-    """Return what the engine's kernel and each peer take, one row each, the kernel first.
+    """Return what the engine's kernels and each peer take, one row each, the kernels first.
 
     A row has "name", "version", and either "unavailable", the reason, or "seconds": by number of
     faces, the seconds per face and force evaluation of the forces alone ("force") and of the steps
-    that need them ("rk2", "verlet"). All do the same work on the same faces, on one thread; seconds
-    are the processor's, so what else the machine does counts little. Each is the median of
-    `repeats` samples, for which all take turns, after one to warm up.
+    that need them ("rk2", "verlet", those that it has). All do the same work on the same faces, on
+    one thread; seconds are the processor's, so what else the machine does counts little. Each is
+    the median of `repeats` samples, for which all take turns, after one to warm up.
 
     Args:
         rig: A rig without plate, in mode "rest".
         faces: Numbers of faces.
-        peers: Whom to measure; None takes the engine's kernel and every peer.
+        peers: Whom to measure; None takes both of the engine's kernels and every peer.
         repeats: Samples of each.
         seconds: Least length of a sample.
 
     Raises:
         InvalidValue: If the rig has a term that the peers lack.
     """
-    peers = (KernelPeer(), *every_peer()) if peers is None else peers
+    peers = (LanesPeer(), KernelPeer(), *every_peer()) if peers is None else peers
     moving = moving_face(rig)
     reasons = [peer.unavailable for peer in peers]
     able = [peer for peer, reason in zip(peers, reasons, strict=True) if reason is None]
@@ -137,11 +138,11 @@ def _side_by_side(
 
 def _works(peer: Peer, dt: float) -> dict[str, tuple[Sample, int]]:
     """Return what is measured of a peer, and how many force evaluations each count has."""
-    return {
-        "force": (peer.evaluate, 1),
-        "rk2": (lambda count: peer.substeps(count, dt, "rk2"), EVALUATIONS["rk2"]),
-        "verlet": (lambda count: peer.substeps(count, dt, "verlet"), EVALUATIONS["verlet"]),
-    }
+
+    def steps(integrator: Integrator) -> tuple[Sample, int]:
+        return lambda count: peer.substeps(count, dt, integrator), EVALUATIONS[integrator]
+
+    return {"force": (peer.evaluate, 1), **{name: steps(name) for name in peer.integrators}}
 
 
 def _enough(sample: Sample, seconds: float) -> int:

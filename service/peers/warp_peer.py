@@ -22,6 +22,7 @@ from engine.dynamics import Skull, Tissue
 
 from .common import (
     EVALUATIONS,
+    INTEGRATORS,
     MOST_LANES,
     Blocks,
     Integrator,
@@ -37,6 +38,7 @@ class WarpPeer:
     """Warp on the processor, float32."""
 
     name = "warp"
+    integrators = INTEGRATORS
 
     _tables: Tables
     _layout: Blocks
