@@ -24,7 +24,7 @@ check: $(STAMPS)/python-dev $(STAMPS)/node
 	npm --prefix static run check
 
 bench: $(STAMPS)/python
-	$(BIN)/risorius bench
+	$(BIN)/risorius bench --docs docs
 
 levels: $(STAMPS)/python
 	$(BIN)/risorius levels

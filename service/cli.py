@@ -239,16 +239,37 @@ def levels(
 @app.command()
 def bench(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Measure shortly and roughly, in under a minute.")
+    ] = False,
+    docs: Annotated[
+        Path | None,
+        typer.Option(help="Folder to write the page, its picture and a row of figures into."),
+    ] = None,
 ) -> None:
-    """Measure the simulation, the clips and the stream on this machine."""
-    from .bench import measure, table
+    """Measure the simulation beside its peers, the clips and the stream on this machine."""
+    from .benching import measure
+    from .benching.documents import write_documents
+    from .benching.ledger import OtherColumns
+    from .benching.report import terminal
 
-    with _console.status("measuring"):
-        figures = measure()
+    if quick and docs is not None:
+        _refuse("Documents take a whole run; leave out --quick or --docs.")
+    if docs is not None and not docs.is_dir():
+        _refuse(f"The folder {docs} does not exist; make it first.")
+    with _console.status("measuring") as status:
+        figures = measure(quick=quick, show=lambda stage: status.update(f"measuring: {stage}"))
     if as_json:
         typer.echo(json.dumps(figures, indent=2, allow_nan=False))
     else:
-        Console(highlight=False).print(table(figures))
+        Console(highlight=False).print(terminal(figures))
+    if docs is None:
+        return
+    try:
+        write_documents(docs, figures)
+    except (OSError, OtherColumns) as error:
+        _refuse(f"The documents cannot be written: {error}.")
+    _console.print(f"benchmarks.md, .svg and .csv in {escape(str(docs))}", soft_wrap=True)
 
 
 @app.command()

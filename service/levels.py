@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from engine import LEVELS, Recipe, Rig, rig_from_recipe, surface_to_glb, textures_of
 
-from .bench import machine
+from .benching import machine
 from .tables import markdown_table
 
 Stage = Callable[[str], None]

@@ -182,3 +182,8 @@ def test_a_service_starts_says_where_and_stops(tmp_path: Path) -> None:
     assert process.returncode == 0
     assert f"http://127.0.0.1:{port}" in said
     assert "ready" in said
+
+
+def test_documents_of_a_short_run_are_refused(tmp_path: Path) -> None:
+    assert "leave out --quick" in refused(run("bench", "--quick", "--docs", tmp_path))
+    assert "does not exist" in refused(run("bench", "--docs", tmp_path / "nowhere"))

@@ -1,0 +1,85 @@
+"""Every measurement, one after another on the same rig."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from engine import builtin_rig
+
+from ..version import version
+from .contest import measure_contest
+from .crowd import measure_crowds
+from .integrators import measure_integrators
+from .live import measure_latencies
+from .machine import described, load_average, machine
+from .meshes import SPLITS, measure_meshes
+from .output import measure_output
+from .roof import measure_roof
+
+Show = Callable[[str], None]
+
+
+class Effort(NamedTuple):
+    """How long things are measured.
+
+    Attributes:
+        seconds: Of each row of crowds; integrators and meshes take half of it.
+        sample: Seconds of a peer's sample.
+        repeats: Samples of each peer.
+        commands: Timed through the runner, for each number of faces.
+        clip: Seconds of animation.
+        splits: How fine the meshes are split.
+    """
+
+    seconds: float
+    sample: float
+    repeats: int
+    commands: int
+    clip: float
+    splits: tuple[int, ...]
+
+
+FULL = Effort(4.0, 0.1, 7, 300, 4.0, SPLITS)
+QUICK = Effort(0.2, 0.01, 3, 20, 0.4, SPLITS[:2])
+
+
+def _silent(stage: str) -> None:
+    """Show nothing."""
+
+
+def measure(
+    rig_name: str = "standard", *, quick: bool = False, show: Show = _silent
+) -> dict[str, Any]:
+    """Return every figure, in the unit that its name says.
+
+    Args:
+        rig_name: A built-in rig.
+        quick: Whether to measure shortly and roughly.
+        show: Told what is being measured.
+    """
+    effort, load = QUICK if quick else FULL, load_average()
+    rig = builtin_rig(rig_name)
+    parts: dict[str, Callable[[], Any]] = {
+        "peers": lambda: measure_contest(rig, seconds=effort.sample, repeats=effort.repeats),
+        "integrators": lambda: measure_integrators(rig, seconds=effort.seconds / 2),
+        "crowds": lambda: measure_crowds(rig, seconds=effort.seconds),
+        "meshes": lambda: measure_meshes(rig, seconds=effort.seconds / 2, splits=effort.splits),
+        "latency": lambda: measure_latencies(rig, commands=effort.commands),
+        "output": lambda: measure_output(rig, clip_seconds=effort.clip),
+        "roof": measure_roof,
+    }
+    figures: dict[str, Any] = {
+        "risorius": version(),
+        "source": described(),
+        "date": datetime.now(UTC).date().isoformat(),
+        "quick": quick,
+        "machine": machine(),
+        "load_average": load,
+        "rig": {"id": rig.id, "name": rig.name, "vertices": len(rig.head.points)},
+    }
+    for name, part in parts.items():
+        show(name)
+        figures[name] = part()
+    return figures

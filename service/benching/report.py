@@ -1,0 +1,221 @@
+"""The figures as tables: for a terminal, and for Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rich.console import Group
+from rich.table import Table
+
+from ..tables import markdown_table
+
+Row = Sequence[object]
+
+
+@dataclass(frozen=True)
+class Section:
+    """One table.
+
+    Attributes:
+        title: Its heading.
+        note: What one has to know to read it.
+        head: Title of each column; the first is of names, the others of numbers.
+        rows: Its cells.
+    """
+
+    title: str
+    note: str
+    head: tuple[str, ...]
+    rows: tuple[Row, ...]
+
+
+def about(figures: dict[str, Any]) -> str:
+    """Return in one line what was measured where."""
+    machine = figures["machine"]
+    load = figures["load_average"]
+    versions = ", ".join(f"{name} {machine[name]}" for name in ("numpy", "numba", "scipy"))
+    return (
+        f"{machine['processor']}, {machine['cores']} cores; {machine['system']}; Python "
+        f"{machine['python']}, {versions}; load average at the start "
+        f"{load[0] if load else 'unknown'}; risorius {figures['risorius']}, source "
+        f"{figures['source'] or 'unknown'}, {figures['date']}; rig {figures['rig']['name']}"
+        f"{'; measured shortly (--quick)' if figures['quick'] else ''}."
+    )
+
+
+def sections(figures: dict[str, Any]) -> list[Section]:
+    """Return every table."""
+    found = [
+        _peers(figures["peers"]),
+        _integrators(figures["integrators"]),
+        _crowds(figures["crowds"]),
+        _meshes(figures["meshes"]),
+        _latency(figures["latency"]),
+        _named(
+            "Clips and frames",
+            "A clip runs the reference, midpoint Runge-Kutta in float64, and is written as GLB "
+            "without textures; the frame is a smile.",
+            figures["output"],
+        ),
+    ]
+    if figures["roof"]:
+        found.append(_named("The roof of the machine", "", figures["roof"]))
+    return found
+
+
+def terminal(figures: dict[str, Any]) -> Group:
+    """Return the tables for people at a terminal."""
+    return Group(about(figures), *(_printed(section) for section in sections(figures)))
+
+
+def markdown(figures: dict[str, Any]) -> str:
+    """Return the tables for a document, each under a heading."""
+    blocks = []
+    for section in sections(figures):
+        blocks += [f"## {section.title}", ""]
+        blocks += [section.note, ""] if section.note else []
+        blocks += [*markdown_table(section.head, section.rows), ""]
+    return "\n".join(blocks)
+
+
+def _printed(section: Section) -> Table:
+    table = Table(title=section.title, title_justify="left", caption=section.note or None)
+    table.caption_justify = "left"
+    table.add_column(section.head[0])
+    for name in section.head[1:]:
+        table.add_column(name, justify="right")
+    for row in section.rows:
+        table.add_row(*(str(cell) for cell in row))
+    return table
+
+
+def _peers(contest: dict[str, Any]) -> Section:
+    faces = [str(count) for count in contest["faces"]]
+    rows: list[Row] = []
+    for peer in contest["peers"]:
+        name = f"{peer['name']}, {peer['version']}" if peer["version"] else peer["name"]
+        if "unavailable" in peer:
+            rows.append((name, "not installed", *[""] * (3 * len(faces) - 1)))
+            continue
+        took, ratio = peer["us"], peer["ratio"]
+        cells = (
+            (f"{took[n]['force']:.1f}", f"{took[n]['verlet']:.1f}", f"{ratio[n]:.1f}")
+            for n in faces
+        )
+        rows.append((name, *(cell for three in cells for cell in three)))
+    head = (f"{n}: {what}" for n in faces for what in ("forces", "step", "ratio"))
+    return Section(
+        "The kernels beside their peers",
+        "µs of one thread a face and force evaluation, for 1, 16 and 64 faces: the forces alone, "
+        "and a step of position Verlet with them. All compute the same forces of the same moving "
+        "faces, without contact; a test holds each to the reference. The peers are in float32 "
+        "with faces side by side, as fast as we could write them. The lanes are the kernel of "
+        "live faces: sixteen a bank, always stepped whole, so that one face alone costs what "
+        "sixteen do, and is slower than the kernel for one. Their forces are measured with a step "
+        "that goes nowhere, since they do both in one pass. Ratios are of steps: how many times "
+        "the lanes' time it takes.",
+        ("kernel", *head),
+        tuple(rows),
+    )
+
+
+def _integrators(rows: list[dict[str, Any]]) -> Section:
+    return Section(
+        "Integrators",
+        "A tick is 1/60 s; substeps are the fewest that are stable on this rig. Faces are stepped "
+        "with all that belongs to it (commands mixed, jaw, lids, muscles, contact).",
+        ("integrator", "kernel", "substeps a tick", "ms a face and tick", "µs a substep"),
+        tuple(
+            (
+                row["integrator"],
+                f"{row['kernel']}, {row['precision']}",
+                row["substeps"],
+                f"{row['face_tick_ms']:.3f}",
+                f"{row['substep_us']:.1f}",
+            )
+            for row in rows
+        ),
+    )
+
+
+def _crowds(rows: list[dict[str, Any]]) -> Section:
+    return Section(
+        "Faces awake",
+        "µs of one thread a face and tick, through the public simulator with the model of live "
+        "faces. Each face takes up a new random mix of two to five action units every 15 ticks, "
+        "in 0.2 s; commanding and stepping are both counted, frames included. Faces a core at "
+        "60 Hz are (1/60 s) / (time a face and tick): beyond what real time leaves room for, the "
+        "figure is of throughput. A bank is stepped whole, so that few faces cost what sixteen do.",
+        ("faces", "commanding", "stepping", "both", "faces a core at 60 Hz"),
+        tuple(
+            (
+                row["faces"],
+                f"{row['commanding_us']:.1f}",
+                f"{row['stepping_us']:.0f}",
+                f"{row['face_tick_us']:.0f}",
+                f"{row['faces_per_core_60hz']:.0f}",
+            )
+            for row in rows
+        ),
+    )
+
+
+def _meshes(rows: list[dict[str, Any]]) -> Section:
+    return Section(
+        "Finer meshes",
+        "The skin of the rig taken as a mesh from a file would be, each triangle split into 1, 4, "
+        "9 and 16: three layers of nodes under it, the muscles at the same places, no lids, lips "
+        "or teeth to meet. Sixteen faces in lanes, in the same motion.",
+        (
+            "triangles",
+            "nodes",
+            "substeps a tick",
+            "µs a face and tick",
+            "ns a triangle and substep",
+            "faces a core at 60 Hz",
+        ),
+        tuple(
+            (
+                f"{row['triangles']:,}",
+                f"{row['nodes']:,}",
+                row["substeps"],
+                f"{row['face_tick_us']:.0f}",
+                f"{row['ns_per_triangle_substep']:.1f}",
+                f"{row['faces_per_core_60hz']:.1f}",
+            )
+            for row in rows
+        ),
+    )
+
+
+def _latency(rows: list[dict[str, Any]]) -> Section:
+    return Section(
+        "From a command to its frame",
+        "ms of the clock through the service's runner at 60 Hz, all faces in motion on one "
+        "simulation thread: until a command is answered with its tick, and until the first frame "
+        "that shows it is handed out. Commands come at any time within a tick, so that half a "
+        "tick (8.3 ms) is waiting. Late ticks began more than half a tick after their time.",
+        ("faces", "answered", "p99", "frame", "p99", "late ticks", "thread busy"),
+        tuple(
+            (
+                row["faces"],
+                f"{row['answered_median_ms']:.1f}",
+                f"{row['answered_p99_ms']:.1f}",
+                f"{row['seen_median_ms']:.1f}",
+                f"{row['seen_p99_ms']:.1f}",
+                f"{row['late_ticks']} of {row['ticks']}",
+                f"{row['busy_percent']:.0f} %",
+            )
+            for row in rows
+        ),
+    )
+
+
+def _named(title: str, note: str, values: dict[str, Any]) -> Section:
+    rows = tuple(
+        (name.replace("_", " "), f"{value:,g}" if isinstance(value, int | float) else value)
+        for name, value in values.items()
+    )
+    return Section(title, note, ("figure", "value"), rows)
