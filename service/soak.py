@@ -20,7 +20,7 @@ import numpy as np
 from rich.table import Table
 from websockets.exceptions import WebSocketException
 
-from .bench import machine
+from .benching import machine
 from .priority import AWAITED, stand_back
 from .soak_client import Client, Counts, SoakRefused, Viewer, own_service
 

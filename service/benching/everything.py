@@ -30,6 +30,7 @@ class Effort(NamedTuple):
         repeats: Samples of each peer.
         commands: Timed through the runner, for each number of faces.
         clip: Seconds of animation.
+        sweeps: Samples of the roof.
         splits: How fine the meshes are split.
     """
 
@@ -38,11 +39,12 @@ class Effort(NamedTuple):
     repeats: int
     commands: int
     clip: float
+    sweeps: int
     splits: tuple[int, ...]
 
 
-FULL = Effort(4.0, 0.1, 7, 300, 4.0, SPLITS)
-QUICK = Effort(0.2, 0.01, 3, 20, 0.4, SPLITS[:2])
+FULL = Effort(4.0, 0.1, 7, 300, 4.0, 100, SPLITS)
+QUICK = Effort(0.2, 0.01, 3, 20, 0.4, 10, SPLITS[:2])
 
 
 def _silent(stage: str) -> None:
@@ -68,7 +70,7 @@ def measure(
         "meshes": lambda: measure_meshes(rig, seconds=effort.seconds / 2, splits=effort.splits),
         "latency": lambda: measure_latencies(rig, commands=effort.commands),
         "output": lambda: measure_output(rig, clip_seconds=effort.clip),
-        "roof": measure_roof,
+        "roof": lambda: measure_roof(rig, repeats=effort.sweeps),
     }
     figures: dict[str, Any] = {
         "risorius": version(),

@@ -58,6 +58,7 @@ def test_every_figure_is_measured(figures: Figures) -> None:
         "frame_bytes",
     ):
         assert figures["output"][name] > 0
+    assert 0 < figures["roof"]["share_of_peak_percent"] < 100
     assert [row["faces"] for row in figures["crowds"]] == [1, 4, 16, 64, 256]
     assert [row["faces"] for row in figures["latency"]] == [1, 16, 64]
     for row in figures["latency"]:
@@ -139,8 +140,6 @@ def test_the_tables_have_every_part(figures: Figures) -> None:
         assert section.title in printed
         assert f"## {section.title}" in written
         assert all(len(row) == len(section.head) for row in section.rows)
-    roofed = {**figures, "roof": {"peak_gflops": 41.5}}
-    assert "| peak gflops | 41.5 |" in markdown(roofed)
 
 
 def test_a_run_is_written_as_a_page_a_picture_and_a_row(figures: Figures, tmp_path: Path) -> None:
