@@ -23,6 +23,7 @@ check: $(STAMPS)/python-dev $(STAMPS)/node
 	$(BIN)/lint-imports
 	npm --prefix static run check
 
+# Beside Taichi and Warp where they are: .venv/bin/pip install -e '.[bench]'
 bench: $(STAMPS)/python
 	$(BIN)/risorius bench --docs docs
 

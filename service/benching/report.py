@@ -55,8 +55,9 @@ def sections(figures: dict[str, Any]) -> list[Section]:
         _latency(figures["latency"]),
         _named(
             "Clips and frames",
-            "A clip runs the reference, midpoint Runge-Kutta in float64, and is written as GLB "
-            "without textures; the frame is a smile.",
+            "Seconds of animation a second of the processor: a clip runs the reference, midpoint "
+            "Runge-Kutta in float64, and is then written as GLB without textures. The frame is a "
+            "smile.",
             figures["output"],
         ),
         _named(
@@ -200,7 +201,8 @@ def _latency(rows: list[dict[str, Any]]) -> Section:
         "ms of the clock through the service's runner at 60 Hz, all faces in motion on one "
         "simulation thread: until a command is answered with its tick, and until the first frame "
         "that shows it is handed out. Commands come at any time within a tick, so that half a "
-        "tick (8.3 ms) is waiting. Late ticks began more than half a tick after their time.",
+        "tick (8.3 ms) is waiting. Late ticks ended more than half a tick after their time: a "
+        "machine on which more wants to run than it has cores (see the load above) has them.",
         ("faces", "answered", "p99", "frame", "p99", "late ticks", "thread busy"),
         tuple(
             (
