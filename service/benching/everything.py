@@ -13,7 +13,7 @@ from .contest import measure_contest
 from .crowd import measure_crowds
 from .integrators import measure_integrators
 from .live import measure_latencies
-from .machine import described, load_average, machine
+from .machine import described, load_average, machine, niceness
 from .meshes import SPLITS, measure_meshes
 from .output import measure_output
 from .roof import measure_roof
@@ -79,6 +79,7 @@ def measure(
         "quick": quick,
         "machine": machine(),
         "load_average": load,
+        "niceness": niceness(),
         "rig": {"id": rig.id, "name": rig.name, "vertices": len(rig.head.points)},
     }
     for name, part in parts.items():

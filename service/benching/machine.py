@@ -29,6 +29,11 @@ def load_average() -> list[float]:
         return []
 
 
+def niceness() -> int:
+    """Return how far this process stands back behind others: 0 not at all, 19 behind all."""
+    return os.nice(0) if hasattr(os, "nice") else 0
+
+
 def described() -> str:
     """Return the state of the source as `git describe` names it, or "" outside a clone."""
     try:

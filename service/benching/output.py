@@ -25,8 +25,9 @@ def measure_output(rig: Rig, *, clip_seconds: float) -> dict[str, float]:
         clip_seconds: Length of the clip.
 
     Returns:
-        Seconds of animation a second of the processor, simulated ("clip_simulation_times_real_time") and with its
-        file written ("clip_times_real_time"); "encode_milliseconds" and "frame_bytes" of a smile.
+        Seconds of animation a second of the processor, simulated
+        ("clip_simulation_times_real_time") and with its file written ("clip_times_real_time");
+        "encode_milliseconds" and "frame_bytes" of a smile.
     """
     return {**_clip(rig, clip_seconds), **_encoding(rig)}
 

@@ -34,12 +34,13 @@ class Section:
 def about(figures: dict[str, Any]) -> str:
     """Return in one line what was measured where."""
     machine = figures["machine"]
-    load = figures["load_average"]
+    load, nice = figures["load_average"], figures["niceness"]
+    behind = f", standing back behind it (nice {nice})" if nice else ""
     versions = ", ".join(f"{name} {machine[name]}" for name in ("numpy", "numba", "scipy"))
     return (
         f"{machine['processor']}, {machine['cores']} cores; {machine['system']}; Python "
         f"{machine['python']}, {versions}; load average at the start "
-        f"{load[0] if load else 'unknown'}; risorius {figures['risorius']}, source "
+        f"{load[0] if load else 'unknown'}{behind}; risorius {figures['risorius']}, source "
         f"{figures['source'] or 'unknown'}, {figures['date']}; rig {figures['rig']['name']}"
         f"{'; measured shortly (--quick)' if figures['quick'] else ''}."
     )

@@ -50,7 +50,7 @@ def without_taichi(figures: Figures) -> Figures:
 def test_every_figure_is_measured(figures: Figures) -> None:
     json.dumps(figures, allow_nan=False)
     assert {"processor", "cores", "python", "numba"} <= set(figures["machine"])
-    assert {"risorius", "source", "date", "load_average", "rig", "roof"} <= set(figures)
+    assert {"risorius", "source", "date", "load_average", "niceness", "rig", "roof"} <= set(figures)
     for name in (
         "clip_simulation_times_real_time",
         "clip_times_real_time",
