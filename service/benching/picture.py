@@ -84,7 +84,7 @@ def _draw_crowds(drawing: Drawing, figures: dict[str, Any], panel: Panel) -> Non
         for (px, py), row in zip(places, crowds, strict=True):
             drawing.dot(px, py, kind)
             drawing.text(px, py - 10, f"{row[name]:,.0f}", "ink", at="middle")
-        drawing.text(panel.right, places[-1][1] - 28, label, kind, at="end")
+        drawing.text(panel.right, places[-1][1] - 38, label, kind, at="end")
 
 
 def _draw_peers(drawing: Drawing, contest: dict[str, Any], panel: Panel) -> None:
