@@ -70,9 +70,7 @@ async def _announce(app: FastAPI, server: uvicorn.Server, console: Console) -> N
 
 
 def _settle() -> None:
-    """Give back what only the start needed, and look for garbage in what comes after it alone."""
-    gc.collect()
-    gc.freeze()
+    """Look for garbage again, and give back what only the start needed."""
     gc.enable()
     with suppress(OSError, AttributeError):  # Only glibc has it.
         ctypes.CDLL(None).malloc_trim(0)
