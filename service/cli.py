@@ -408,8 +408,8 @@ def separability(
         typer.echo(separability_markdown(found))
 
 
-@app.command("start-figures")
-def start_figures(
+@app.command()
+def startup(
     rounds: Annotated[int, typer.Option(min=1, help="How often each is started.")] = 3,
     cold: Annotated[
         bool, typer.Option("--cold/--no-cold", help="Start once with empty caches, too.")
@@ -417,12 +417,11 @@ def start_figures(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Measure what a start costs, seconds and memory, against importing the libraries alone."""
-    from .starting import StartFailed, start_markdown
-    from .starting import start_figures as figures_of
+    from .starting import StartFailed, start_figures, start_markdown
 
     try:
         with _console.status("measuring") as status:
-            figures = figures_of(
+            figures = start_figures(
                 lambda stage: status.update(f"measuring {stage}"), rounds=rounds, cold=cold
             )
     except StartFailed as failed:
