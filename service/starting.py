@@ -105,6 +105,8 @@ def memory_figures(baseline_mb: float) -> dict[str, Any]:
             time.sleep(0.2)
             return resident(started.process.pid)
 
+        # Baked in the background, if nobody has: that is no face's memory.
+        started.wait_for("/api/rigs/standard/textures/albedo.jpg")
         idle = resident(started.process.pid)
         few = awake(FEW, 0.5)
         many = awake(MANY, 1.0)
@@ -170,6 +172,11 @@ class Started:
         )
         with urllib.request.urlopen(request, timeout=60.0) as answer:
             return json.load(answer)
+
+    def wait_for(self, path: str) -> None:
+        """Read what may take long to be made."""
+        with urllib.request.urlopen(self._url + path, timeout=_LONGEST_SECONDS) as answer:
+            answer.read()
 
     def _said(self, pattern: str) -> str:
         assert self.process.stderr is not None
