@@ -49,6 +49,7 @@ from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
 from .timeline import LAYERS, LONGEST_ONSET, TICKS_PER_SECOND, Keyframe, Timeline
+from .warming import warm_kernels
 
 __all__ = [
     "ALIKE",
@@ -137,4 +138,5 @@ __all__ = [
     "textures_of",
     "unit_basis",
     "unit_key",
+    "warm_kernels",
 ]

@@ -9,34 +9,15 @@ the dermis, the last the hypodermis. Units: mm, g, s.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple, TypeVar, cast
+from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from .arrays import FloatArray
+from .compiling import kernel
 
 IndexArray = npt.NDArray[np.int32]
-
-F = TypeVar("F", bound=Callable[..., object])
-
-
-def kernel(function: F) -> F:
-    """Compile `function` when it is first called, without the GIL, and keep the code on disk.
-
-    Of fast mathematics only re-association and fused multiply-add: NaN stays NaN, so a diverging
-    face is seen.
-    """
-    compiled = numba.njit(
-        nogil=True,
-        cache=True,
-        error_model="numpy",
-        fastmath={"reassoc", "contract", "arcp", "nsz"},
-    )(function)
-    return cast(F, compiled)
-
 
 LEAST_VOLUME, MOST_VOLUME = -1.0, 1.5
 """Shares of its volume beyond which an element pulls no harder: torn open or turned over by a jump

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import FloatArray
-from .dynamics import kernel
+from .compiling import kernel
 
 FOLLOWS_DOWN, FOLLOWS_UP = (0.80, 0.25), (0.40, 0.10)
 """Turn of upper and lower lid per degree that the eye looks down or up.

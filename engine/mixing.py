@@ -11,7 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .channels import GROUPS
-from .dynamics import kernel
+from .compiling import kernel
 from .rig import Rig
 from .timeline import LAYERS, Keyframe, ticks
 

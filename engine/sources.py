@@ -7,23 +7,35 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 
 _KINDS = (".py", ".json")
+_NO_KERNELS = ("analysis", "gltf", "head", "inverse")
+"""Packages from which no kernel outside of `head` takes anything."""
 
 
-def sources_hash(folder: Traversable) -> str:
-    """Return a hash of the code and data under `folder`: every file's place and content."""
+def sources_hash(
+    folder: Traversable, *, kinds: tuple[str, ...] = _KINDS, without: tuple[str, ...] = ()
+) -> str:
+    """Return a hash of the code and data under `folder`: every file's place and content.
+
+    Args:
+        folder: Where.
+        kinds: Endings of the files that count.
+        without: Folders right in it that do not.
+    """
     digest = hashlib.sha256()
-    for place, content in sorted(_files(folder, "")):
+    for place, content in sorted(_files(folder, "", kinds)):
+        if place.partition("/")[0] in without:
+            continue
         digest.update(f"{place}\0{len(content)}\0".encode())
         digest.update(content)
     return digest.hexdigest()[:20]
 
 
-def _files(folder: Traversable, place: str) -> list[tuple[str, bytes]]:
+def _files(folder: Traversable, place: str, kinds: tuple[str, ...]) -> list[tuple[str, bytes]]:
     found: list[tuple[str, bytes]] = []
     for entry in folder.iterdir():
         if entry.is_dir():
-            found += _files(entry, f"{place}{entry.name}/")
-        elif entry.name.endswith(_KINDS):
+            found += _files(entry, f"{place}{entry.name}/", kinds)
+        elif entry.name.endswith(kinds):
             found.append((f"{place}{entry.name}", entry.read_bytes()))
     return found
 
@@ -33,3 +45,5 @@ ENGINE_HASH = sources_hash(resources.files(__package__))
 """Hash of the whole engine."""
 HEAD_HASH = sources_hash(resources.files(__package__) / "head")
 """Hash of what makes heads."""
+KERNELS_HASH = sources_hash(resources.files(__package__), kinds=(".py",), without=_NO_KERNELS)
+"""Hash of all code that a kernel outside of `head` may be made of."""

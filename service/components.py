@@ -10,9 +10,11 @@ from typing import Annotated
 import structlog
 from fastapi import Depends, Request
 
-from engine import Model, Timeline
+from engine import Timeline, warm_kernels
 
+from .bodies import ModelChoice
 from .clips import Clips
+from .commands import live_model
 from .embedded import EmbeddedRunner
 from .guard import RateLimit
 from .insight import Insight
@@ -123,14 +125,23 @@ class Components:
     async def _warm_up(self) -> None:
         """Build the first rig and compile every kernel a face needs."""
         try:
-            self.stage = "building the standard rig"
-            rig = await self.rigs.get("standard")
-            self.stage = "compiling the simulation"
-            await self.runner.open(_WARM_UP, rig, Timeline((), 1.0), Model.for_rig(rig))
-            await self.runner.view(_WARM_UP)
-            await self.runner.close(_WARM_UP)
+            self.stage = "building the standard rig, compiling the simulation"
+            compiling = asyncio.create_task(asyncio.to_thread(warm_kernels))
+            try:
+                rig = await self.rigs.get("standard")
+                self.stage = "compiling the simulation"
+            finally:
+                await compiling
             self.stage = "writing the surface"
-            await self.rigs.surface(rig)
+            surface = asyncio.create_task(self.rigs.surface(rig))
+            try:
+                await self.runner.open(
+                    _WARM_UP, rig, Timeline((), 1.0), live_model(ModelChoice(), rig)
+                )
+                await self.runner.view(_WARM_UP)
+                await self.runner.close(_WARM_UP)
+            finally:
+                await surface
         except Exception as error:
             self.stage = f"failed: {error}"
             _LOG.exception("the service could not warm up")

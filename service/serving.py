@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import ctypes
+import gc
 from contextlib import suppress
 
 import uvicorn
@@ -25,6 +27,8 @@ async def serve_until_stopped(settings: Settings, console: Console) -> None:
         OSError: If the address cannot be used.
     """
     take_short_turns()
+    # Until it is ready: what a start makes is no garbage.
+    gc.disable()
     listener = listen(settings.host, settings.port)
     app = create_app(settings)
     server = server_of(app, settings)
@@ -40,6 +44,7 @@ async def serve_until_stopped(settings: Settings, console: Console) -> None:
     try:
         await server.serve(sockets=[listener])
     finally:
+        gc.enable()
         announcing.cancel()
         with suppress(asyncio.CancelledError):
             await announcing
@@ -57,6 +62,15 @@ async def _announce(app: FastAPI, server: uvicorn.Server, console: Console) -> N
             said = parts.stage
             console.print(f"  {said} …", markup=False)
         if said.startswith("failed"):
+            gc.enable()
             return
         await asyncio.sleep(0.1)
+    _settle()
     console.print("  ready")
+
+
+def _settle() -> None:
+    """Look for garbage again, and give back what only the start needed."""
+    gc.enable()
+    with suppress(OSError, AttributeError):  # Only glibc has it.
+        ctypes.CDLL(None).malloc_trim(0)

@@ -6,26 +6,38 @@ Layout rules are those of the glTF 2.0 specification, sections 3.6 (buffers and 
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
-import pygltflib
 
 from .materials import MATERIALS, Look, Maps
 from .tangents import tangents_of
+
+if TYPE_CHECKING:
+    import pygltflib
+else:
+
+    class _Later:
+        """The library from when it is first used: a start does without."""
+
+        def __getattr__(self, name):
+            return getattr(importlib.import_module("pygltflib"), name)
+
+    pygltflib = _Later()
 
 Array = npt.NDArray[Any]
 Extras = Mapping[str, Any]
 Textures = Mapping[str, bytes]
 
 _COMPONENTS = {
-    "float32": pygltflib.FLOAT,
-    "uint32": pygltflib.UNSIGNED_INT,
-    "uint16": pygltflib.UNSIGNED_SHORT,
-    "uint8": pygltflib.UNSIGNED_BYTE,
+    "float32": "FLOAT",
+    "uint32": "UNSIGNED_INT",
+    "uint16": "UNSIGNED_SHORT",
+    "uint8": "UNSIGNED_BYTE",
 }
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _PNG = b"\x89PNG"
@@ -111,7 +123,7 @@ class GlbBuilder:
             count=len(rows),
             indices=pygltflib.AccessorSparseIndices(
                 bufferView=self._view(indices, None),
-                componentType=_COMPONENTS[indices.dtype.name],
+                componentType=getattr(pygltflib, _COMPONENTS[indices.dtype.name]),
             ),
             values=pygltflib.AccessorSparseValues(bufferView=self._view(values, None)),
         )
@@ -132,7 +144,7 @@ class GlbBuilder:
         return pygltflib.Accessor(
             # No offset: pygltflib would write one for accessors without a buffer view too.
             byteOffset=None,
-            componentType=_COMPONENTS[dtype.name],
+            componentType=getattr(pygltflib, _COMPONENTS[dtype.name]),
             count=shape[0],
             type=_TYPES[shape[1] if len(shape) > 1 else 1],
         )

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
-from scipy.ndimage import map_coordinates
 
 from ..arrays import FloatArray
+from ..compiling import kept
 
 LATTICE = 40
 
 
 def noise(points: FloatArray, size: float, seed: int) -> FloatArray:
     """Return noise of deviation about 0.5 and blobs of `size` mm at points (n, 3), shape (n,)."""
+    from scipy.ndimage import map_coordinates  # Here: a start does without.
+
     values = np.random.default_rng(seed).normal(size=(LATTICE, LATTICE, LATTICE))
     return np.asarray(map_coordinates(values, (points / size).T, order=3, mode="grid-wrap"))
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def hashed(x: int, y: int, z: int, seed: int) -> float:
     """Return a number in 0..1 that cell (x, y, z) always gets for one seed."""
     h = np.uint32(x) * np.uint32(0x8DA6B343)
@@ -32,7 +33,7 @@ def hashed(x: int, y: int, z: int, seed: int) -> float:
     return float(h) * 2.3283064365386963e-10
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def value_noise(x: float, y: float, z: float, seed: int) -> float:
     """Return smooth noise in -1..1 with blobs of about one unit (quintic value noise)."""
     i, j, k = int(np.floor(x)), int(np.floor(y)), int(np.floor(z))
@@ -52,7 +53,7 @@ def value_noise(x: float, y: float, z: float, seed: int) -> float:
     return 2 * (low + w * (high - low)) - 1
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def spot_noise(
     x: float, y: float, z: float, chance: float, least: float, most: float, seed: int
 ) -> float:
@@ -80,7 +81,7 @@ def spot_noise(
     return best
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def cell_edges(x: float, y: float, z: float, seed: int) -> float:
     """Return the distance to the border between the two nearest scattered points (Worley 1996)."""
     i, j, k = int(np.floor(x)), int(np.floor(y)), int(np.floor(z))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Float32Array
-from ..dynamics import kernel
+from ..compiling import kernel
 from .network import Network
 from .posing import Posing
 from .sweep import Faces, sweep

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
-from ..dynamics import IndexArray, kernel
+from ..compiling import kernel
+from ..dynamics import IndexArray
 from ..jaw import JawHinge
 from ..lids import stand_lids
 from ..tissue import TissueModel

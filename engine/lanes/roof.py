@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Float32Array
-from ..dynamics import kernel
+from ..compiling import kernel
 from .bank import Bank, Plan
 from .network import Network
 from .sweep import Faces, sweep

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray
-from ..dynamics import IndexArray, kernel
+from ..compiling import kernel
+from ..dynamics import IndexArray
 from ..head import Head
 from .network import COLUMN, Order
 from .posing import turned

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..dynamics import Contacts, IndexArray, kernel
+from ..compiling import kernel
+from ..dynamics import Contacts, IndexArray
 from ..head import Head
 
 LIP_GAP_MM = 0.12

@@ -8,7 +8,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..arrays import FloatArray, IntArray
+from ..cache import cached_arrays, content_key
 from ..head import Head
+from ..sources import ENGINE_HASH
 from .parameters import TissueParameters
 
 NORMAL_SMOOTHING_ROUNDS = 3
@@ -163,7 +165,21 @@ def stack_layers(
 
 
 def smooth_normals(sheet: Sheet) -> FloatArray:
-    """Return node normals, area-weighted, smoothed over neighbours, shape (n, 3)."""
+    """Return node normals, area-weighted, smoothed over neighbours, shape (n, 3); kept on disk."""
+    neighbors = sheet.neighbor_mean.tocsr()
+    key = content_key(
+        ENGINE_HASH,
+        sheet.points,
+        sheet.triangles,
+        sheet.elements,
+        neighbors.indptr,
+        neighbors.indices,
+        neighbors.data,
+    )
+    return cached_arrays("normals", key, lambda: {"normals": _smoothed(sheet)})["normals"]
+
+
+def _smoothed(sheet: Sheet) -> FloatArray:
     cross = triangle_normals(sheet.points, sheet.triangles)
     normals = np.zeros_like(sheet.points)
     for k in range(3):

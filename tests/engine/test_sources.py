@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import ast
+import importlib.util
+import sys
 from pathlib import Path
 
-from engine import sources
+import pytest
+
+import engine  # noqa: F401 - for its modules
+from engine import compiling, sources
 from engine.sources import sources_hash
 
 
@@ -27,3 +33,48 @@ def test_the_engine_s_own_files_are_read_with_it() -> None:
     folder = Path(sources.__file__).parent
     assert sources.ENGINE_HASH == sources_hash(folder)
     assert sources.HEAD_HASH == sources_hash(folder / "head")
+
+
+def test_kernels_are_made_of_what_their_hash_covers() -> None:
+    """Of all that a kernel names, functions and numbers come from the covered modules or head."""
+    seen = set()
+    for place, module in list(sys.modules.items()):
+        if not place.startswith("engine."):
+            continue
+        for value in vars(module).values():
+            function = getattr(value, "py_func", None)
+            if function is not None:
+                seen.add(function.__module__)
+    assert "engine.lanes.advance" in seen
+    packages = {name.split(".")[1] for name in seen}
+    assert not packages & (set(sources._NO_KERNELS) - {"head"})
+    for name in seen:
+        names = {
+            node.module or ""
+            for node in ast.walk(ast.parse(Path(sys.modules[name].__file__ or "").read_text()))
+            if isinstance(node, ast.ImportFrom) and node.level > 0
+        }
+        if not name.startswith("engine.head"):
+            # `Head` is a type there.
+            assert not {n.partition(".")[0] for n in names - {"head"}} & set(sources._NO_KERNELS)
+
+
+def test_a_kept_kernel_is_forgotten_when_other_code_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def load(stamp: str) -> int:
+        monkeypatch.setattr(compiling, "KERNELS_HASH", stamp)
+        source = tmp_path / "kernels.py"
+        source.write_text("def twice(a):\n    return 2 * a\n")
+        spec = importlib.util.spec_from_file_location("kernels", source)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        twice = compiling.kernel(module.twice)
+        assert twice(3) == 6
+        return sum(twice.stats.cache_hits.values())
+
+    assert load("one") == 0
+    assert load("one") == 1
+    assert load("another") == 0

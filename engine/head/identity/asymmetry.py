@@ -9,9 +9,9 @@ Means of healthy faces lie between 0.5 and 1 mm (Ferrario et al. 2001; Djordjevi
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray
+from ...compiling import kept
 from ..recipe import Recipe
 from .fields import Anchors
 
@@ -38,7 +38,7 @@ def asymmetry_at(recipe: Recipe, points: FloatArray, anchors: Anchors) -> FloatA
     return np.asarray(size * free * _odd(points, middles, widths, pushes))
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _odd(
     points: FloatArray, middles: FloatArray, widths: FloatArray, pushes: FloatArray
 ) -> FloatArray:

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray
+from ...compiling import kept
 
 Vector = tuple[float, float, float]
 Anchors = Mapping[str, FloatArray]
@@ -143,7 +143,7 @@ def _row(numbers: Sequence[Sequence[float] | FloatArray]) -> FloatArray:
     return np.concatenate([flat, np.zeros(ROW - len(flat))])
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _field(rows: FloatArray, points: FloatArray) -> FloatArray:
     """Sum the terms at every point of the left half and mirror them for the right one."""
     total = np.zeros_like(points)
@@ -168,7 +168,7 @@ def _field(rows: FloatArray, points: FloatArray) -> FloatArray:
     return total
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _add_bump(row: FloatArray, x: float, y: float, z: float, side: float, to: FloatArray) -> None:
     a, b, c = x - row[1], y - row[2], z - row[3]
     square = (a * row[4]) ** 2 + (b * row[5]) ** 2 + (c * row[6]) ** 2
@@ -179,7 +179,7 @@ def _add_bump(row: FloatArray, x: float, y: float, z: float, side: float, to: Fl
         to[2] += weight * (row[9] + row[16] * a + row[17] * b + row[18] * c)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _add_ramp(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> None:
     axis = row[1]
     place = x if axis == 0.0 else y if axis == 1.0 else z
@@ -197,7 +197,7 @@ def _add_ramp(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> 
         to[2] += weight * row[7]
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _add_lip(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> None:
     away = max(row[1] * (y - row[7]), 0.0) / row[2]
     share = min(x / row[9], 1.0)
@@ -210,6 +210,6 @@ def _add_lip(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> N
         to[2] += weight * row[5]
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _softplus(x: float) -> float:
     return max(x, 0.0) + math.log1p(math.exp(-abs(x)))

@@ -13,10 +13,12 @@ from functools import lru_cache
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
+from ...cache import Arrays, cached_arrays
 from ..geometry import Mesh, grid_triangles, vertex_normals, without_slivers
 from ..head import Part
 from ..patches import EYE_CENTER, EYE_RADIUS
 from ..recipe import STANDARD, Recipe
+from ..storage import source_key
 from .iris import IRIS_RADIUS, PUPIL_RADIUS, SIZE, eye_colors, eye_uvs
 
 SEGMENTS = 44
@@ -95,8 +97,12 @@ def eyes_of(parts: Sequence[Part], recipe: Recipe) -> tuple[Part, ...]:
 
 @lru_cache(maxsize=16)
 def _ball_colors(recipe: Recipe) -> tuple[FloatArray, FloatArray]:
-    left, right = (part.colors for part in eye_parts(recipe) if part.material == "eye")
-    return left, right
+    def paint() -> Arrays:
+        left, right = (part.colors for part in eye_parts(recipe) if part.material == "eye")
+        return {"left": left, "right": right}
+
+    arrays = cached_arrays("eyes", source_key(recipe), paint)
+    return arrays["left"], arrays["right"]
 
 
 def _eyeball() -> tuple[Mesh, FloatArray]:

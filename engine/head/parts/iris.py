@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import gaussian_filter
 
 from ...arrays import FloatArray
 from ..anatomy import smoothstep
@@ -213,6 +212,8 @@ def _sclera(
 
 def _vessels(noise: np.random.Generator) -> FloatArray:
     """Return how much vessels cover the map: winding trees from the corners towards the limbus."""
+    from scipy.ndimage import gaussian_filter  # Here: a start does without.
+
     cover = np.zeros((SIZE, SIZE))
     for number in range(VESSELS):
         side = 0.0 if number % 2 else np.pi

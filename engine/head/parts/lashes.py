@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ...arrays import FloatArray
 from ..hair_color import brow_color
@@ -81,6 +80,8 @@ def lashes_part(skin: DrawnSurface, lid_edge: FloatArray, recipe: Recipe = STAND
 def _row(
     row: Row, edge: FloatArray, longer: float, color: FloatArray, noise: np.random.Generator
 ) -> Strands:
+    from scipy.interpolate import CubicSpline  # Here: a start does without.
+
     jitter = noise.uniform(-0.45, 0.45, row.count)
     spoke = 0.7 + 7.2 * (np.arange(row.count) + jitter) / row.count
     root = np.asarray(CubicSpline(np.arange(9), edge)(spoke))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from ...arrays import FloatArray, IntArray
@@ -71,6 +70,8 @@ def _strip(skin: DrawnSurface, edge: FloatArray, reach: float, side: int) -> tup
         reach: How far up the ball the strip goes, mm.
         side: 1 for the left eye, -1 for the right.
     """
+    from scipy.interpolate import CubicSpline  # Here: a start does without.
+
     flip = np.array([side, 1.0, 1.0])
     spline = CubicSpline(np.arange(9), edge)
     share = np.linspace(0.9, 7.0, SAMPLES)

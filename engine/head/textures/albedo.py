@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from ...arrays import Float32Array, FloatArray
+from ...compiling import kept
 from ..hair_color import brow_color, scalp_color
 from ..noise import spot_noise, value_noise
 from ..recipe import Recipe
@@ -113,13 +113,13 @@ def _moles(places: Float32Array, front: Float32Array, look: Complexion) -> Float
     return np.column_stack([np.sin(angle), height, np.cos(angle), radius])
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _step(low: float, high: float, value: float) -> float:
     share = min(max((value - low) / (high - low), 0.0), 1.0)
     return share * share * (3 - 2 * share)
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _colored(
     places: Float32Array,
     table: Float32Array,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...compiling import kept
 from ..geometry import joined, vertex_normals
 from ..head import Head
 
@@ -54,7 +54,7 @@ def _visible(vertices: FloatArray, triangles: IntArray, direction: FloatArray) -
     return np.asarray(_unhidden(flat, triangles, PIXELS, BIAS))
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _unhidden(
     flat: FloatArray, triangles: IntArray, size: int, bias: float
 ) -> npt.NDArray[np.float64]:

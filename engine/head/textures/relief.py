@@ -10,10 +10,9 @@ from dataclasses import fields
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
-from scipy.ndimage import gaussian_filter
 
 from ...arrays import Float32Array, FloatArray
+from ...compiling import kept
 from ..noise import cell_edges, hashed, spot_noise, value_noise
 from ..recipe import Recipe
 from .texels import Texels
@@ -64,6 +63,8 @@ def creases(texels: Texels, heights: Float32Array, rest: Float32Array) -> npt.ND
         heights: With every wrinkle formed [mm], shape (n,).
         rest: At rest [mm], shape (n,).
     """
+    from scipy.ndimage import gaussian_filter  # Here: a start does without.
+
     found = normals(texels, heights)
     formed = texels.image(heights - rest).astype(np.float32)
     width = float(np.median(texels.width))
@@ -85,7 +86,7 @@ def normals(texels: Texels, heights: Float32Array) -> npt.NDArray[np.uint8]:
     return np.asarray((normal * 127.5 + 128).clip(0, 255), dtype=np.uint8)
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _fine_relief(
     places: Float32Array, table: Float32Array, sex: float, seed: int
 ) -> npt.NDArray[np.float32]:
@@ -121,21 +122,21 @@ def _fine_relief(
     return found
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _groove(noise: float, spacing: float, width: float) -> float:
     """Return the profile of a line where noise crosses zero: 1 at its bottom, raised beside it."""
     gap = noise * spacing / width
     return float(np.exp(-gap * gap) - 0.32 * np.exp(-((abs(gap) - 2.0) ** 2)))
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _crease(gap: float, width: float) -> float:
     """Return the profile of a crease between two rolls of skin: sharp below, rounded above."""
     apart = abs(gap) / width
     return float(0.62 * np.exp(-apart * apart) + 0.42 * np.exp(-apart / 3.2))
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _rolls(gap: float, spacing: float, width: float) -> float:
     """Return the profile of a furrow between soft rolls, each as broad as furrows lie apart.
 
@@ -153,7 +154,7 @@ def _rolls(gap: float, spacing: float, width: float) -> float:
     return float(0.8 * (1 - fall / whole) + 0.2 * np.exp(-((gap / width) ** 2)))
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def cheek_step(gap: float) -> tuple[float, float]:
     """Return the fold beside the mouth: the cheek's roll over the lip's side, and the valley.
 
@@ -168,7 +169,7 @@ def cheek_step(gap: float) -> tuple[float, float]:
     return float(roll), float(np.exp(-((gap / width) ** 2)))
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def dimples(x: float, y: float, z: float, seed: int) -> float:
     """Return how deep a point lies in scattered shallow pits: 0 between, about 1 in a deep one.
 
@@ -190,19 +191,19 @@ def dimples(x: float, y: float, z: float, seed: int) -> float:
     return float(depth)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _ramp(low: float, high: float, value: float) -> float:
     share = min(max((value - low) / (high - low), 0.0), 1.0)
     return share * share * (3 - 2 * share)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kept(nogil=True, inline="always")
 def _spot(x: float, y: float, cx: float, cy: float, width: float, height: float) -> float:
     u, v = (x - cx) / width, (y - cy) / height
     return float(np.exp(-((u * u + v * v) ** 2)))
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _along(x: float, y: float, curve: FloatArray) -> tuple[float, float]:
     """Return the signed distance from a curve (k, 2), and the share of the way along it."""
     best, sign, share = 1e9, 1.0, 0.0
@@ -227,7 +228,7 @@ _MENTOLABIAL = np.array([[0.0, -91.0], [8.0, -90.5], [16.0, -89.0], [22.0, -86.5
 _TEAR = np.array([[13.0, -8.0], [18.0, -14.0], [25.0, -18.5], [34.0, -20.0], [43.0, -18.0]])
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[np.float32]:
     """Return the depth (negative) of fully formed wrinkles [mm], shape (n,)."""
     found = np.empty(len(places), dtype=np.float32)

@@ -7,10 +7,9 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
-from scipy.ndimage import distance_transform_edt
 
 from ...arrays import Float32Array, FloatArray, IntArray
+from ...compiling import kept
 
 Image = npt.NDArray[np.float32]
 
@@ -71,13 +70,15 @@ class Texels:
     @cached_property
     def _nearest(self) -> IntArray:
         """The texel of the skin nearest to each place on the map, shape (size, size)."""
+        from scipy.ndimage import distance_transform_edt  # Here: a start does without.
+
         index = np.full((self.size, self.size), -1)
         index[self.rows, self.columns] = np.arange(len(self.rows))
         places = distance_transform_edt(index < 0, return_distances=False, return_indices=True)
         return np.asarray(index[places[0], places[1]])
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _rasterised(
     places: FloatArray, triangles: IntArray, size: int
 ) -> tuple[npt.NDArray[np.int32], Float32Array]:
@@ -105,7 +106,7 @@ def _rasterised(
     return owner, shares
 
 
-@njit(cache=True, nogil=True)
+@kept(nogil=True)
 def _carried(table: Float32Array, corners: IntArray, shares: Float32Array) -> Float32Array:
     found = np.empty((len(corners), table.shape[1]), dtype=np.float32)
     for n in range(len(corners)):

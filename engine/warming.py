@@ -1,0 +1,45 @@
+"""The kernels of live faces, compiled or loaded before there is a face: on a patch of skin.
+
+What a kernel is compiled for are the types of its arrays, which any head has; so this can run
+beside the making of the first one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from .head import head_from_mesh
+from .rig import Rig, rig_from_head
+from .simulator import Simulator
+from .timeline import Keyframe
+from .tissue import TissueParameters
+
+COLUMNS, ROWS = 8, 9
+HALF_WIDTH, TOP, BOTTOM = 60.0, 60.0, -90.0
+"""Of the patch, mm."""
+
+
+def warm_kernels() -> None:
+    """Compile or load every kernel that a live face needs."""
+    rig = _patch()
+    simulator = Simulator(rig, model=replace(rig.model, integrator="verlet"), threads=1)
+    simulator.add("face")
+    simulator.apply("face", Keyframe(action_units={"AU12": 1.0}))
+    simulator.step()
+
+
+def _patch() -> Rig:
+    x, y = np.meshgrid(
+        np.linspace(-HALF_WIDTH, HALF_WIDTH, COLUMNS), np.linspace(BOTTOM, TOP, ROWS)
+    )
+    points = np.column_stack([x.ravel(), y.ravel(), 95.0 - (x.ravel() / 12.0) ** 2])
+    index = np.arange(COLUMNS * ROWS).reshape(ROWS, COLUMNS)
+    a, b, c, d = (
+        corner.ravel()
+        for corner in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1])
+    )
+    triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    head = head_from_mesh(points, triangles, name="patch")
+    return rig_from_head(head, parameters=TissueParameters())
