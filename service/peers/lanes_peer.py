@@ -2,7 +2,8 @@
 
 Its sweep takes the forces and moves the nodes in one pass, column by column, so that its forces
 alone are measured with a step that goes nowhere. A bank is always stepped whole: one face costs
-what sixteen cost. It has Verlet only.
+what sixteen cost. It has Verlet only. The loops around the sweep are compiled at each start: kept
+on disk, they would go on as they were when the sweep changes.
 """
 
 from __future__ import annotations
@@ -10,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from engine.arrays import Float32Array, FloatArray, IntArray
-from engine.dynamics import Skull, Tissue, kernel
+from engine.dynamics import Skull, Tissue
 from engine.lanes import WIDTH
 from engine.lanes.network import Network, Order, arrange, order_columns
 from engine.lanes.sweep import Faces, sweep
-from engine.lanes.vector import aligned, load, splat, store
+from engine.lanes.vector import aligned, load, part, splat, store
 
 from .common import Blocks, Integrator, Tables, blocks_of, installed_version
 
@@ -131,7 +132,7 @@ class LanesPeer:
         return np.ascontiguousarray(np.swapaxes(self._layout.unpack(nodes), 1, 2))
 
 
-@kernel
+@part
 def sweep_often(
     faces: Faces,
     net: Network,
@@ -145,7 +146,7 @@ def sweep_often(
         sweep(faces, net, F(0.0), keep, gain, drift)
 
 
-@kernel
+@part
 def drift(x: Float32Array, v: Float32Array, time: np.float32) -> None:
     """Move every node as its velocity says."""
     for i in range(0, x.shape[0], WIDTH):
