@@ -22,6 +22,7 @@ class FaceState:
         tick: Ticks since it was added.
         still_ticks: How long it has been still.
         asleep: Whether it has been still for so long that it is not stepped.
+        since: Its simulator's clock when `tick` was last right, for one asleep.
         diverged: Whether it was put back to rest in the last tick.
         speed: Greatest component of a velocity after the last tick, mm/s.
         lost: Whether it is farther from rest than any face, or no number at all.
@@ -39,6 +40,7 @@ class FaceState:
     tick: int = 0
     still_ticks: int = 0
     asleep: bool = False
+    since: int = 0
     diverged: bool = False
     speed: float = 0.0
     lost: bool = False

@@ -169,6 +169,10 @@ class Mixer:
             h.expires is not None and tick >= h.expires for h in self._held.values()
         )
 
+    def alarm(self) -> int | None:
+        """Return the tick at which the first layer's time is up, None where all hold for ever."""
+        return min((h.expires for h in self._held.values() if h.expires is not None), default=None)
+
     def report(self, tick: int) -> dict[str, object]:
         """Return what each layer holds and the merged command, as plain data."""
         self._expire(tick)

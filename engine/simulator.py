@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -93,6 +94,10 @@ class Simulator:
         self.model = model or rig.model
         self.assembly: Assembly = compile_rig(rig, self.model, substeps)
         self._faces: dict[str, FaceState] = {}
+        self._awake: dict[str, FaceState] = {}
+        self._clock = 0
+        # When sleepers' holds are over, by the clock: nobody looks at them until then.
+        self._alarms: list[tuple[int, str]] = []
         kind = Together if Together.fits(self.assembly) else Alone
         self._stepper: Alone | Together = kind(self.assembly, farthest=FARTHEST_MM)
         count = threads or os.cpu_count() or 1
@@ -120,8 +125,8 @@ class Simulator:
             if state.x.shape != self.assembly.tissue.arrays.rest.shape:
                 raise InvalidValue("the state belongs to a head with another number of nodes")
             state.mixer = state.mixer.moved_to(self.rig, state.tick)
-            state.asleep, state.still_ticks = False, 0
         self._faces[face] = state
+        self._wake(face, state)
 
     def branch(self, face: str, name: str) -> None:
         """Add a face called `name` that goes on from where `face` stands.
@@ -153,6 +158,7 @@ class Simulator:
         state = self._face(face)
         self._stepper.leave(state)
         del self._faces[face]
+        self._awake.pop(face, None)
         return state
 
     def apply(self, face: str, keyframe: Keyframe) -> int:
@@ -165,20 +171,17 @@ class Simulator:
         state = self._face(face)
         self.rig.check(keyframe)
         state.mixer.apply(keyframe, state.tick)
-        state.asleep, state.still_ticks = False, 0
+        self._wake(face, state)
         return state.tick
 
     def step(self) -> dict[str, Frame]:
         """Advance every face by one tick and return the frames of those that were awake."""
-        for state in self._faces.values():
-            if state.asleep and state.mixer.due(state.tick):
-                state.asleep, state.still_ticks = False, 0
-            elif state.asleep:
-                state.tick += 1
-        awake = {name: state for name, state in self._faces.items() if not state.asleep}
+        self._ring()
+        awake = dict(self._awake)
         self._stepper.step(list(awake.values()), self._pool)
-        for state in awake.values():
-            self._judge(state)
+        self._clock += 1
+        for name, state in awake.items():
+            self._judge(name, state)
         return {name: self._frame(state) for name, state in awake.items()}
 
     def frame(self, face: str) -> Frame:
@@ -219,9 +222,35 @@ class Simulator:
     def _face(self, face: str) -> FaceState:
         if face not in self._faces:
             raise UnknownName("face", face, self._faces)
-        return self._faces[face]
+        state = self._faces[face]
+        if state.asleep:
+            state.tick += self._clock - state.since
+            state.since = self._clock
+        return state
 
-    def _judge(self, state: FaceState) -> None:
+    def _wake(self, face: str, state: FaceState) -> None:
+        state.asleep, state.still_ticks = False, 0
+        self._awake[face] = state
+
+    def _sleep(self, face: str, state: FaceState) -> None:
+        self._stepper.leave(state)
+        state.v[:] = 0.0
+        state.asleep, state.since = True, self._clock
+        del self._awake[face]
+        alarm = state.mixer.alarm()
+        if alarm is not None:
+            heapq.heappush(self._alarms, (self._clock + alarm - state.tick, face))
+
+    def _ring(self) -> None:
+        """Wake the sleepers whose hold is over; a face may have gone or woken since."""
+        while self._alarms and self._alarms[0][0] <= self._clock:
+            _, face = heapq.heappop(self._alarms)
+            if face in self._faces and self._faces[face].asleep:
+                state = self._face(face)
+                if state.mixer.due(state.tick):
+                    self._wake(face, state)
+
+    def _judge(self, face: str, state: FaceState) -> None:
         """Catch a face that diverged, and let one that rests fall asleep."""
         state.tick += 1
         state.diverged = state.lost
@@ -233,9 +262,7 @@ class Simulator:
         else:
             state.still_ticks = 0
         if state.still_ticks >= STILL_TICKS:
-            self._stepper.leave(state)
-            state.v[:] = 0.0
-            state.asleep = True
+            self._sleep(face, state)
 
     def _signals_move(self, state: FaceState) -> bool:
         if state.mixer.changing(state.tick):

@@ -7,6 +7,7 @@ import pytest
 
 from engine import InvalidValue, Keyframe, Model, Simulator, UnknownName
 from engine.measure import settle
+from engine.mixing import Mixer
 
 SMILE = Keyframe(action_units={"AU12": 1.0, "AU6": 0.6}, fade=0.1)
 SHOCK = Keyframe(action_units={"AU1": 1.0, "AU26": 0.7}, layer="emotion", hold=0.1, fade_out=0.1)
@@ -214,3 +215,27 @@ def test_eyes_and_head_follow_with_their_own_inertia(standard_rig):
         simulator.step()
     assert simulator.frame("a").pose.gaze_right == (10.0, 0.0)
     assert simulator.frame("a").pose.head == (0.0, -5.0, 0.0)
+
+
+def test_sleepers_are_not_looked_at_until_their_hold_is_over(standard_rig, model, monkeypatch):
+    simulator = Simulator(standard_rig, model=model)
+    for name in range(5):
+        simulator.add(str(name))
+    smile = Keyframe(action_units={"AU12": 0.5}, hold=1.5, fade=0.1, fade_out=0.1)
+    simulator.apply("3", smile)
+    while simulator.step():
+        pass
+    slept = simulator._clock
+    looked = []
+    due = Mixer.due
+    monkeypatch.setattr(Mixer, "due", lambda mixer, tick: looked.append(tick) or due(mixer, tick))
+    ticks = 0
+    while not simulator.step():
+        ticks += 1
+    assert 0 < ticks < 90 - slept + 20
+    assert len(looked) == 1
+    assert list(simulator.step()) == ["3"]
+    assert {simulator.frame(name).tick for name in simulator.faces} == {simulator._clock}
+    simulator.remove("3")
+    for _ in range(3):
+        assert simulator.step() == {}
