@@ -64,6 +64,7 @@ class Alone:
         carried = self._pose(state)
         skull, pull = self._forces(state)
         assembly = self._assembly
+        before = state.x.copy()
         if state.work is None:
             state.work = workspace(assembly.tissue.arrays)
         advance(
@@ -80,7 +81,7 @@ class Alone:
         if carried is not None:
             held, places = carried
             state.x[:, held], state.v[:, held] = places, 0.0
-        state.speed = float(np.abs(state.v).max())
+        state.speed = float(np.abs(state.x - before).max()) * TICKS_PER_SECOND
         farthest = float(np.abs(state.x - assembly.tissue.arrays.rest).max())
         state.lost = not farthest < self._farthest  # also true for NaN
 

@@ -24,7 +24,8 @@ class FaceState:
         asleep: Whether it has been still for so long that it is not stepped.
         since: Its simulator's clock when `tick` was last right, for one asleep.
         diverged: Whether it was put back to rest in the last tick.
-        speed: Greatest component of a velocity after the last tick, mm/s.
+        speed: How fast a node went in the last tick, at most along one axis, mm/s. Velocities do
+            not tell: what two contacts hold between them has one that they take away every substep.
         lost: Whether it is farther from rest than any face, or no number at all.
         targets: Where the skull holds the ties, mm, shape (3, n); where it does at rest if None.
         skull, posed: The skull side of a face stepped alone, and the jaw and lids it was posed by.

@@ -12,6 +12,7 @@ import numpy as np
 from .alone import Alone
 from .arrays import FloatArray
 from .assembly import Assembly, compile_rig
+from .calm import calmed
 from .channels import GROUPS
 from .dynamics import Skull
 from .errors import InvalidValue, UnknownName
@@ -93,12 +94,15 @@ class Simulator:
         self.rig = rig
         self.model = model or rig.model
         self.assembly: Assembly = compile_rig(rig, self.model, substeps)
+        together = Together.fits(self.assembly)
+        if together and substeps is None:
+            self.assembly = calmed(self.assembly)
         self._faces: dict[str, FaceState] = {}
         self._awake: dict[str, FaceState] = {}
         self._clock = 0
         # When sleepers' holds are over, by the clock: nobody looks at them until then.
         self._alarms: list[tuple[int, str]] = []
-        kind = Together if Together.fits(self.assembly) else Alone
+        kind = Together if together else Alone
         self._stepper: Alone | Together = kind(self.assembly, farthest=FARTHEST_MM)
         count = threads or os.cpu_count() or 1
         self._pool = ThreadPoolExecutor(count) if count > 1 else None

@@ -78,7 +78,7 @@ class Bank:
     Attributes:
         faces: The arrays, as kernels take them.
         signals: Activations, jaw, gaze and head of each lane, shape (16, channels).
-        speed: Greatest component of a velocity in each lane after the last tick, mm/s.
+        speed: How fast a node of each lane went in the last tick, along one axis, mm/s.
         lost: How many components of each lane were too far from rest, or no numbers.
     """
 
@@ -94,6 +94,7 @@ class Bank:
         sizes = (*(9 * n,) * 4, *(3 * n,) * 4, 9 * len(plan.posing.held))
         self.faces = Faces(*(aligned(size * WIDTH) for size in sizes))
         self._targets = np.ascontiguousarray(plan.rest.reshape(n, 3, 3)[:, 2])
+        self._before = aligned(9 * n * WIDTH)
         self._moved = aligned(3 * plan.points * WIDTH)
         self._jaw, self._lids = aligned(3 * WIDTH), aligned(4 * WIDTH)
         self._activations, self._fared = aligned(plan.muscles * WIDTH), aligned(2 * WIDTH)
@@ -103,8 +104,8 @@ class Bank:
 
     @property
     def speed(self) -> Float32Array:
-        """Greatest component of a velocity in each lane after the last tick, mm/s, shape (16,)."""
-        return self._fared[:WIDTH]
+        """How fast a node of each lane went in the last tick, along one axis, mm/s, (16,)."""
+        return np.float32(TICKS_PER_SECOND) * self._fared[:WIDTH]
 
     @property
     def lost(self) -> Float32Array:
@@ -124,6 +125,7 @@ class Bank:
         self.clear(lane)
         _nodes(faces.x)[order.nodes, :, lane] = x.T
         _nodes(faces.v)[order.nodes, :, lane] = v.T
+        _nodes(self._before)[order.nodes, :, lane] = x.T
         if targets is not None:
             _nodes(faces.target)[order.places, :, lane] = targets.T
 
@@ -137,6 +139,7 @@ class Bank:
     def clear(self, lane: int) -> None:
         """Put a lane to rest."""
         _nodes(self.faces.x)[:, :, lane] = self._plan.rest.reshape(-1, 3)
+        _nodes(self._before)[:, :, lane] = self._plan.rest.reshape(-1, 3)
         _nodes(self.faces.v)[:, :, lane] = 0.0
         _nodes(self.faces.target)[:, :, lane] = self._targets
         self.signals[lane] = 0.0
@@ -157,7 +160,7 @@ class Bank:
             plan.substeps,
             1.0 / (TICKS_PER_SECOND * plan.substeps),
         )
-        fare(faces.x, faces.v, plan.rest, self._farthest, self._fared)
+        fare(faces.x, self._before, plan.rest, self._farthest, self._fared)
         seen = np.empty((WIDTH, plan.points, 3))
         surface(faces.x, plan.following, self._jaw, self._moved, seen)
         return seen

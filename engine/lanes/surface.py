@@ -102,27 +102,29 @@ def surface(
 
 @kernel
 def fare(
-    x: Float32Array, v: Float32Array, rest: Float32Array, most: float, out: Float32Array
+    x: Float32Array, before: Float32Array, rest: Float32Array, most: float, out: Float32Array
 ) -> None:
     """Set `out`, shape (2 x 16,), to how sixteen faces fare.
 
-    First the greatest component of a velocity, mm/s; then how many components of positions are
-    `most` mm from rest or farther, or no numbers at all.
+    First how far a node went since the last tick, at most along one axis, mm; then how many
+    components of positions are `most` mm from rest or farther, or no numbers at all.
 
     Args:
         x: As in `Faces`.
-        v: As in `Faces`.
+        before: Positions after the last tick, overwritten with those of this one.
         rest: Nodes at rest, one number for each component.
         most: mm.
         out: Overwritten.
     """
     zero, one, limit = splat(F(0.0)), splat(F(1.0)), splat(F(most))
-    fastest, lost = zero, zero
+    farthest, lost = zero, zero
     for i in range(rest.shape[0]):
-        speed = load(v, i * WIDTH)
-        fastest = greater(greater(speed, zero - speed), fastest)
-        gone = load(x, i * WIDTH) - splat(rest[i])
+        here = load(x, i * WIDTH)
+        way = here - load(before, i * WIDTH)
+        farthest = greater(greater(way, zero - way), farthest)
+        store(before, i * WIDTH, here)
+        gone = here - splat(rest[i])
         # The limit is not greater than what is no number.
         lost = lost + pick(limit, greater(gone, zero - gone), zero, one)
-    store(out, 0, fastest)
+    store(out, 0, farthest)
     store(out, WIDTH, lost)

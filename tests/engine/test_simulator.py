@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import InvalidValue, Keyframe, Model, Simulator, UnknownName
+from engine import InvalidValue, Keyframe, Model, Simulator, UnknownName, builtin_rig
 from engine.measure import settle
 from engine.mixing import Mixer
 
@@ -239,3 +239,16 @@ def test_sleepers_are_not_looked_at_until_their_hold_is_over(standard_rig, model
     simulator.remove("3")
     for _ in range(3):
         assert simulator.step() == {}
+
+
+@pytest.mark.parametrize(("person", "unit"), [("kwame", "AU28"), ("omar", "AU28")])
+@pytest.mark.parametrize("integrator", ["rk2", "verlet"])
+def test_lips_held_between_contacts_fall_asleep(person, unit, integrator):
+    """They have a velocity that lips and teeth take away every substep, and do not move."""
+    rig = builtin_rig(person)
+    simulator = Simulator(rig, model=Model.for_rig(rig, integrator=integrator))
+    simulator.add("a")
+    simulator.apply("a", Keyframe(action_units={unit: 1.0}))
+    for _ in range(120):
+        simulator.step()
+    assert simulator.frame("a").asleep

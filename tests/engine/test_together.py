@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from engine import FaceState, Keyframe, Model, Simulator
+from engine import FaceState, Keyframe, Model, Simulator, builtin_rig
 from engine.alone import Alone
 from engine.dynamics import scratch_for, static_forces
 from engine.flesh import random_mixes
@@ -190,3 +190,14 @@ def test_what_the_kernel_lacks_is_stepped_alone(standard_rig, live):
         Simulator(standard_rig.derive(tissue={"plate": 20.0}), model=live),
     ):
         assert isinstance(other._stepper, Alone)
+
+
+def test_a_rig_whose_lips_would_buzz_takes_shorter_steps(standard_rig, live):
+    """Mei's tightened lips are stiffer than masses are made for, the built-in head's are not."""
+    assert Simulator(standard_rig, model=live).assembly.substeps == 7
+    mei = builtin_rig("mei")
+    simulator = in_a_bank(mei, live, [Keyframe(action_units={"AU23": 1.0})])
+    assert simulator.assembly.substeps > 7
+    for _ in range(90):
+        simulator.step()
+    assert simulator.frame("0").asleep
