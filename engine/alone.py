@@ -12,12 +12,10 @@ from .assembly import Assembly
 from .dynamics import Pull, Skull, add_basis_forces, advance, workspace
 from .face import FaceState
 from .force_basis import ride_jaw
+from .lag import lagged
 from .lids import stand_lids
 from .skull import pose_held, pose_skull
 from .timeline import TICKS_PER_SECOND
-
-ARRIVED = 1.0e-4
-"""Distance, activation or degrees, at which a lagging channel takes its command's value."""
 
 
 class Alone:
@@ -60,7 +58,8 @@ class Alone:
         return face.skull or skull_of(self._assembly, face)
 
     def _step(self, state: FaceState) -> None:
-        follow(self._assembly, state)
+        command = state.mixer.at(state.tick)
+        state.signals = lagged(state.signals, command, self._assembly.smoothing)
         carried = self._pose(state)
         skull, pull = self._forces(state)
         assembly = self._assembly
@@ -141,13 +140,6 @@ class Alone:
         return ride_jaw(
             moving, self._assembly.rides[active], self._assembly.rig.jaw, (pitch, yaw, thrust)
         )
-
-
-def follow(assembly: Assembly, face: FaceState) -> None:
-    """Let muscles, jaw, gaze and head follow the command, each with its own inertia."""
-    command = face.mixer.at(face.tick)
-    gap = command - face.signals
-    face.signals = np.where(np.abs(gap) < ARRIVED, command, face.signals + assembly.smoothing * gap)
 
 
 def rigid_signals(assembly: Assembly, face: FaceState) -> FloatArray:

@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from .assembly import Assembly
+from .lag import lagged
 from .lanes import Bank, Plan, plan_of
 from .timeline import TICKS_PER_SECOND
 
@@ -41,6 +42,6 @@ def _rests(assembly: Assembly, plan: Plan) -> bool:
     for lane, unit in enumerate(unit for unit in TRIALS if unit in rig.action_units):
         commands[lane] = rig.contraction({unit: 1.0})
     for _ in range(round(SECONDS * TICKS_PER_SECOND)):
-        bank.signals += assembly.smoothing * (commands - bank.signals)
+        bank.signals[:] = lagged(bank.signals, commands, assembly.smoothing)
         bank.step()
     return bool(bank.speed.max() < BUZZ)

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np
-
-from .alone import ARRIVED, skull_of, surface_of
+from .alone import skull_of, surface_of
 from .arrays import FloatArray
 from .assembly import Assembly
 from .dynamics import Skull
 from .face import FaceState
+from .lag import lagged
 from .lanes import WIDTH, Bank, plan_of
 
 
@@ -105,9 +104,7 @@ class Together:
         commands = bank.signals.copy()
         for lane, face in seated:
             commands[lane] = face.mixer.at(face.tick)
-        gap = commands - bank.signals
-        near = np.abs(gap) < ARRIVED
-        bank.signals[:] = np.where(near, commands, bank.signals + self._assembly.smoothing * gap)
+        bank.signals[:] = lagged(bank.signals, commands, self._assembly.smoothing)
         seen = bank.step()
         speed, lost = bank.speed.tolist(), bank.lost.tolist()
         for lane, face in seated:

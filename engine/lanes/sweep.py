@@ -70,6 +70,14 @@ def node_sum(x: Float32Array, i: int) -> tuple[Lanes, Lanes, Lanes]:
 
 
 @part
+def add_node(force: Float32Array, i: int, fx: Lanes, fy: Lanes, fz: Lanes) -> None:
+    """Add a force to the node that begins at `i`."""
+    add_at(force, i, fx)
+    add_at(force, i + Y, fy)
+    add_at(force, i + Z, fz)
+
+
+@part
 def add_elements(x: Float32Array, force: Float32Array, net: Network, column: int) -> None:
     """Add what the elements of one column do: `dynamics.add_prism_forces`.
 
@@ -111,24 +119,12 @@ def add_elements(x: Float32Array, force: Float32Array, net: Network, column: int
             kx, ky, kz = hy * pz - hz * py, hz * px - hx * pz, hx * py - hy * px
             sx, sy, sz = sx + nx, sy + ny, sz + nz
             tx, ty, tz = tx - ax - kx, ty - ay - ky, tz - az - kz
-            add_at(force, b, ax + nx)
-            add_at(force, b + Y, ay + ny)
-            add_at(force, b + Z, az + nz)
-            add_at(force, lb, ax - nx)
-            add_at(force, lb + Y, ay - ny)
-            add_at(force, lb + Z, az - nz)
-            add_at(force, c, kx + nx)
-            add_at(force, c + Y, ky + ny)
-            add_at(force, c + Z, kz + nz)
-            add_at(force, lc, kx - nx)
-            add_at(force, lc + Y, ky - ny)
-            add_at(force, lc + Z, kz - nz)
-        add_at(force, a, tx + sx)
-        add_at(force, a + Y, ty + sy)
-        add_at(force, a + Z, tz + sz)
-        add_at(force, la, tx - sx)
-        add_at(force, la + Y, ty - sy)
-        add_at(force, la + Z, tz - sz)
+            add_node(force, b, ax + nx, ay + ny, az + nz)
+            add_node(force, lb, ax - nx, ay - ny, az - nz)
+            add_node(force, c, kx + nx, ky + ny, kz + nz)
+            add_node(force, lc, kx - nx, ky - ny, kz - nz)
+        add_node(force, a, tx + sx, ty + sy, tz + sz)
+        add_node(force, la, tx - sx, ty - sy, tz - sz)
 
 
 @part
@@ -136,9 +132,7 @@ def add_to_column(force: Float32Array, i: int, fx: Lanes, fy: Lanes, fz: Lanes) 
     """Add one force to each node of the column that begins at `i`."""
     for layer in range(3):
         j = i + layer * NODE
-        add_at(force, j, fx)
-        add_at(force, j + Y, fy)
-        add_at(force, j + Z, fz)
+        add_node(force, j, fx, fy, fz)
 
 
 @part

@@ -11,7 +11,16 @@ from engine.lanes import plan_of, roof
 from engine.lanes import sweep as text
 from engine.lanes.network import Network
 
-PARTS = ("add_at", "add_elements", "add_fat", "add_to_column", "tie", "node_sum", "sweep")
+PARTS = (
+    "add_at",
+    "add_node",
+    "add_elements",
+    "add_fat",
+    "add_to_column",
+    "tie",
+    "node_sum",
+    "sweep",
+)
 INVERSE_ROOT = 5
 
 
