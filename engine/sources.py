@@ -6,7 +6,7 @@ import hashlib
 from importlib import resources
 from importlib.resources.abc import Traversable
 
-_KINDS = (".py", ".json")
+_KINDS = (".py", ".json", ".npz")
 _NO_KERNELS = ("analysis", "gltf", "head", "inverse")
 """Packages from which no kernel outside of `head` takes anything."""
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from engine.head import Head
+from engine.head import layout as layout_module
+from engine.head.layout import layout_file, layout_key, shipped, unwrapped
+from engine.head.shipping import write_layout
 from engine.head.standard import Sculpture
 from engine.head.textures.texels import Texels
-from engine.head.uv import ISLANDS, Unwrap, unwrap
+from engine.head.uv import ISLANDS, Pieces, Unwrap, unwrap
 
 FACE_SHARE = 0.45
 SIZE = 512
@@ -17,6 +23,11 @@ SIZE = 512
 @pytest.fixture(scope="module")
 def laid_out(sculpture: Sculpture) -> Unwrap:
     return unwrap(sculpture.cage, sculpture.limit, sculpture.points)
+
+
+@pytest.fixture(scope="module")
+def pieces(sculpture: Sculpture) -> Pieces:
+    return Pieces.of(sculpture.cage, sculpture.limit, sculpture.points)
 
 
 def signed_areas(head: Head) -> np.ndarray:
@@ -87,3 +98,52 @@ def test_face_is_laid_out_evenly(head: Head) -> None:
     front = (texels.carried(drawn.reference)[:, 2] > 60) & (texels.rows < 0.74 * SIZE)
     low, high = np.percentile(texels.width[front], [2, 98])
     assert high / low < 2.2
+
+
+def test_what_ships_is_what_the_code_makes(sculpture: Sculpture, laid_out: Unwrap) -> None:
+    """If not: `python -m engine.head.shipping`."""
+    made = unwrapped(sculpture.cage, sculpture.limit, sculpture.points)
+    np.testing.assert_array_equal(made.keys, laid_out.keys)
+    np.testing.assert_allclose(made.uvs, laid_out.uvs, atol=1e-5)  # a fiftieth of a texel
+
+
+def test_what_ships_fits_and_is_small(pieces: Pieces) -> None:
+    assert shipped(pieces) is not None
+    assert layout_file().stat().st_size < 50_000
+
+
+def test_what_ships_is_for_one_skin_whatever_its_rounding(pieces: Pieces) -> None:
+    noise = np.random.default_rng(1).normal(0, 1e-10, pieces.vertices.shape)
+    assert layout_key(replace(pieces, vertices=pieces.vertices + noise)) == layout_key(pieces)
+    moved = pieces.vertices.copy()
+    moved[700, 1] += 0.01
+    assert shipped(replace(pieces, vertices=moved)) is None
+
+
+def test_another_skin_is_laid_out_anew(
+    sculpture: Sculpture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls: list[Pieces] = []
+
+    def scattered(pieces: Pieces) -> np.ndarray:
+        calls.append(pieces)
+        count = sum(len(used) for _, used, _ in pieces.authored())
+        return np.random.default_rng(0).uniform(size=(count, 2))
+
+    monkeypatch.setenv("RISORIUS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(layout_module, "flattened_islands", scattered)
+    points = sculpture.points * 1.001
+    for _ in range(2):  # The second time they are kept.
+        unwrapped(sculpture.cage, sculpture.limit, points)
+    assert len(calls) == 1
+
+
+def test_what_is_written_is_read_again(
+    pieces: Pieces, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = shipped(pieces)
+    path = tmp_path / "islands.npz"
+    monkeypatch.setattr("engine.head.shipping.flattened_islands", lambda pieces: before)
+    write_layout(pieces, path)
+    monkeypatch.setattr(layout_module, "layout_file", lambda: path)
+    np.testing.assert_array_equal(shipped(pieces), before)
