@@ -13,7 +13,6 @@ from .cage import Cage
 from .geometry import vertex_normals
 from .graded import drawn_fine, graded_triangles
 from .head import DrawnSurface, Eye, LidContact
-from .paint import painted
 from .subdivision import Limit
 from .surface_map import surface_map
 from .tissue_surface import symmetric_triangles
@@ -102,7 +101,7 @@ def drawn_surface(
     surface_points: IntArray,
     eyes: Sequence[Eye],
 ) -> DrawnSurface:
-    """Return the skin to draw.
+    """Return the skin to draw, not yet painted.
 
     Args:
         cage: The cage.
@@ -122,7 +121,7 @@ def drawn_surface(
 
 
 def tissue_as_drawn(cage: Cage, mesh: SkinMesh, eyes: Sequence[Eye]) -> DrawnSurface:
-    """Return a tissue surface drawn as it is: its own vertices, moved one to one."""
+    """Return a tissue surface drawn as it is, its vertices moved one to one, not yet painted."""
     identity = sp.csr_array(sp.eye_array(len(mesh.vertices)))
     return _finished(cage, mesh, mesh.vertices, identity, eyes)
 
@@ -132,7 +131,7 @@ def _finished(
 ) -> DrawnSurface:
     names = tuple(sorted(set(cage.regions)))
     regions = vertex_regions(cage, mesh, names)
-    bare = DrawnSurface(
+    return DrawnSurface(
         vertices=mesh.vertices,
         normals=vertex_normals(mesh.vertices, mesh.triangles, mesh.seams),
         triangles=mesh.triangles,
@@ -146,7 +145,6 @@ def _finished(
         reference=None if mesh.uvs is None else reference[mesh.indices],
         seams=mesh.seams,
     )
-    return painted(bare)
 
 
 def vertex_regions(cage: Cage, mesh: SkinMesh, names: Sequence[str]) -> IntArray:

@@ -19,8 +19,9 @@ from .groom import groomed
 from .head import DrawnSurface, Eye, Head, Part
 from .identity import moved_arrays, person_from, with_moved
 from .landmarks import landmark_vertices
+from .layout import unwrapped
 from .paint import painted
-from .parts import eyes_of, hair_parts, head_parts
+from .parts import brows_part, eyes_of, hair_parts, head_parts, lashes_part
 from .patches import EYE_CENTER, EYE_RADIUS
 from .recipe import STANDARD, Recipe
 from .skin import LEVELS, SkinMesh, drawn_surface, skin_mesh, textured, tissue_as_drawn
@@ -28,7 +29,6 @@ from .storage import head_from_arrays, head_to_arrays, source_key
 from .subdivision import Limit, cage_level, limit_surface
 from .tissue_surface import TissueSurface, face_sheet, symmetric_triangles, tissue_surface
 from .topology import Topology
-from .uv import Unwrap, unwrap
 
 # Semi-sharp creases along rows of the cage; chosen by eye.
 CREASES = (
@@ -101,7 +101,10 @@ def _in_colors(head: Head, recipe: Recipe) -> Head:
 
 @lru_cache(maxsize=len(LEVELS))
 def reference_head(level: str) -> Head:
-    """Return the head that all people are made from; what a warp leaves as it is, they share."""
+    """Return the head that all people are made from; what a warp leaves as it is, they share.
+
+    It has no hair, and neither skin nor eyes are painted: each person's are their own.
+    """
     return _cached(f"standard-{level}", lambda: _standard(level))
 
 
@@ -137,18 +140,10 @@ def _standard(level: str) -> Head:
     sculpture = sculpt()
     cage, limit = sculpture.cage, sculpture.limit
     tissue = tissue_surface(cage, sculpture.points, face_sheet(cage))
-    mesh = textured(skin_mesh(cage, limit, sculpture.points, LEVELS[level]), _unwrapped(sculpture))
+    mesh = skin_mesh(cage, limit, sculpture.points, LEVELS[level])
+    mesh = textured(mesh, unwrapped(cage, limit, sculpture.points))
     drawn = drawn_surface(cage, limit, mesh, sculpture.finest, tissue.cage_points, sculpture.eyes)
-    return _assembled("standard", sculpture, tissue, mesh, drawn, hair_parts(drawn))
-
-
-def _unwrapped(sculpture: Sculpture) -> Unwrap:
-    arrays = cached_arrays(
-        "uvs",
-        source_key("uvs"),
-        lambda: vars(unwrap(sculpture.cage, sculpture.limit, sculpture.points)),
-    )
-    return Unwrap(**arrays)
+    return _assembled("standard", sculpture, tissue, mesh, drawn, ())
 
 
 def _paper() -> Head:
@@ -163,16 +158,24 @@ def _paper() -> Head:
         triangles=tissue.triangles,
         cage_faces=tissue.triangle_faces,
     )
-    drawn = tissue_as_drawn(cage, mesh, sculpture.eyes)
-    return _assembled("paper", sculpture, tissue, mesh, drawn, _skullcap(sculpture, tissue))
+    drawn = painted(tissue_as_drawn(cage, mesh, sculpture.eyes))
+    grown = [
+        brows_part(drawn),
+        lashes_part(drawn, _lid_edge(sculpture)),
+        *_skullcap(sculpture, tissue),
+    ]
+    bare = _assembled("paper", sculpture, tissue, mesh, drawn, grown)
+    return replace(bare, parts=eyes_of(bare.parts, STANDARD))
 
 
 def _skullcap(sculpture: Sculpture, tissue: TissueSurface) -> list[Part]:
     """Return what the paper's mask leaves out, as rigid parts: back of the head, neck, hair."""
     cage = sculpture.cage
     mesh = skin_mesh(cage, sculpture.limit, sculpture.points, 0)
-    whole = drawn_surface(
-        cage, sculpture.limit, mesh, sculpture.finest, tissue.cage_points, sculpture.eyes
+    whole = painted(
+        drawn_surface(
+            cage, sculpture.limit, mesh, sculpture.finest, tissue.cage_points, sculpture.eyes
+        )
     )
     left_out = whole.triangles[~np.isin(mesh.cage_faces, tissue.triangle_faces)]
     used, renumbered = np.unique(left_out, return_inverse=True)
@@ -202,7 +205,6 @@ def _assembled(
 ) -> Head:
     cage = sculpture.cage
     sided = cage.sided_names
-    lid_edge = sculpture.points[[cage.left[f"E1_{spoke}"] for spoke in range(16)]]
     return Head(
         name=name,
         points=sculpture.points[tissue.cage_points],
@@ -219,10 +221,16 @@ def _assembled(
         follow=tissue.follow,
         follow_jaw=tissue.follow_jaw,
         drawn=drawn,
-        parts=(*head_parts(drawn, lid_edge), *hair),
+        parts=(*head_parts(drawn, _lid_edge(sculpture)), *hair),
         eyes=sculpture.eyes,
         landmarks=landmark_vertices(cage, mesh.indices),
     )
+
+
+def _lid_edge(sculpture: Sculpture) -> FloatArray:
+    """Return the front edge of the left lids by spoke [mm], shape (16, 3)."""
+    left = sculpture.cage.left
+    return np.asarray(sculpture.points[[left[f"E1_{spoke}"] for spoke in range(16)]])
 
 
 def _creased(cage: Cage) -> tuple[Topology, IntArray, FloatArray]:

@@ -23,21 +23,21 @@ def head_parts(
 ) -> tuple[Part, ...]:
     """Return every part of the built-in head but its hair, fitted to its drawn skin.
 
+    The eyes are not yet painted (`eyes_of`).
+
     Args:
         skin: The drawn skin.
         lid_edge: Front edge of the left lids by spoke [mm], shape (16, 3).
         recipe: Whose parts.
     """
     return (
-        *eye_parts(recipe),
+        *eye_parts(),
         *caruncle_parts(lid_edge),
         tear_line_part(skin, lid_edge),
         *teeth_parts(recipe),
         *gum_parts(),
         *palate_parts(),
         tongue_part(),
-        brows_part(skin),
-        lashes_part(skin, lid_edge),
     )
 
 

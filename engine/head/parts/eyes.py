@@ -19,7 +19,7 @@ from ..head import Part
 from ..patches import EYE_CENTER, EYE_RADIUS
 from ..recipe import STANDARD, Recipe
 from ..storage import source_key
-from .iris import IRIS_RADIUS, PUPIL_RADIUS, SIZE, eye_colors, eye_uvs
+from .iris import IRIS_RADIUS, PUPIL_RADIUS, SIZE, colors_at, eye_uvs
 
 SEGMENTS = 44
 IRIS_ROOT = 9.75
@@ -43,26 +43,23 @@ BACK_ANGLE = 2.2
 """Angle from the eye's axis beyond which the ball is left open, radians."""
 
 
-def eye_parts(recipe: Recipe) -> list[Part]:
-    """Return ball and cornea of both eyes."""
+def eye_parts() -> list[Part]:
+    """Return ball and cornea of both eyes, not yet painted (`eyes_of`)."""
     ball, uvs = _eyeball()
     cornea = _cornea()
-    colors = _at(eye_colors(recipe), uvs)
     parts = []
     for side, offset in (("L", EYE_CENTER), ("R", EYE_CENTER * [-1, 1, 1])):
         # The shape is its own mirror image, so it is only moved; the right eye's map is mirrored.
-        own_uvs = uvs if side == "L" else np.column_stack([1 - uvs[:, 0], uvs[:, 1]])
-        own_colors = colors if side == "L" else _at(eye_colors(recipe), own_uvs)
         parts.append(
             Part(
                 name=f"eye.{side}",
                 vertices=ball[0] + offset,
                 normals=vertex_normals(*ball),
                 triangles=ball[1],
-                colors=own_colors,
+                colors=np.zeros_like(ball[0]),
                 material="eye",
                 follows=f"eye.{side}",
-                uvs=own_uvs,
+                uvs=uvs if side == "L" else _turned_over(uvs),
             )
         )
         cornea_uvs = eye_uvs(cornea[0])
@@ -98,7 +95,8 @@ def eyes_of(parts: Sequence[Part], recipe: Recipe) -> tuple[Part, ...]:
 @lru_cache(maxsize=16)
 def _ball_colors(recipe: Recipe) -> tuple[FloatArray, FloatArray]:
     def paint() -> Arrays:
-        left, right = (part.colors for part in eye_parts(recipe) if part.material == "eye")
+        _, uvs = _eyeball()
+        left, right = _at(recipe, np.stack([uvs, _turned_over(uvs)]))
         return {"left": left, "right": right}
 
     arrays = cached_arrays("eyes", source_key(recipe), paint)
@@ -163,10 +161,16 @@ def _turned(radius: FloatArray, depth: FloatArray, segments: int) -> tuple[Float
     return vertices, without_slivers(vertices, triangles)
 
 
-def _at(colors: FloatArray, uvs: FloatArray) -> FloatArray:
-    """Return the map's colour at places (v, 2), the mean of a few pixels round each."""
+def _turned_over(uvs: FloatArray) -> FloatArray:
+    """Return the places (v, 2) on the right eye's map of the left eye's."""
+    return np.column_stack([1 - uvs[:, 0], uvs[:, 1]])
+
+
+def _at(recipe: Recipe, uvs: FloatArray) -> FloatArray:
+    """Return the map's colour at places (..., 2), the mean of a few pixels round each."""
     place = np.clip((uvs * SIZE).astype(np.int64), 2, SIZE - 3)
-    around = [
-        colors[place[:, 1] + row, place[:, 0] + column] for row in (-1, 1) for column in (-1, 1)
-    ]
-    return np.asarray(np.mean(around, axis=0))
+    # Rows and columns of the four pixels, shape (4, ...) each.
+    beside = np.array([(row, column) for row in (-1, 1) for column in (-1, 1)])
+    rows = np.add.outer(beside[:, 0], place[..., 1])
+    columns = np.add.outer(beside[:, 1], place[..., 0])
+    return np.asarray(colors_at(recipe, rows, columns).mean(axis=0))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from ..anatomy import smoothstep
 from ..patches import EYE_RADIUS
 from ..recipe import Recipe
@@ -99,15 +99,27 @@ def eye_texture(recipe: Recipe) -> npt.NDArray[np.uint8]:
 
 def eye_colors(recipe: Recipe) -> FloatArray:
     """Return the map of a person's eyes as linear RGB in 0..1, shape (512, 512, 3)."""
+    rows, columns = np.indices((SIZE, SIZE))
+    return colors_at(recipe, rows, columns)
+
+
+def colors_at(recipe: Recipe, rows: IntArray, columns: IntArray) -> FloatArray:
+    """Return some pixels of the map of a person's eyes as linear RGB in 0..1, shape (..., 3).
+
+    Args:
+        recipe: The person.
+        rows: Of the pixels, from the top, shape (...).
+        columns: Shape (...).
+    """
     center = (np.arange(SIZE) + 0.5) / SIZE - 0.5
-    right, up = np.meshgrid(center, -center)
+    right, up = center[columns], -center[rows]
     radius = np.hypot(right, up)
     around = np.arctan2(up, right)
     angle = np.pi / 2 * np.clip(2 * radius, 0, 1) ** (1 / MAP_POWER)
     off_axis = EYE_RADIUS * np.sin(angle)
     noise = np.random.default_rng([recipe.seed, 131])
     iris = _iris(off_axis, around, IRISES[recipe.eye_color], noise)
-    sclera = _sclera(angle, around, recipe, noise)
+    sclera = _sclera(angle, around, recipe, noise, (rows, columns))
     # The sclera laps over the cornea unevenly, more above and below than to the sides.
     lap = 0.12 * np.abs(np.sin(around)) + 0.06 * _ringed(noise, around, 0 * around, 17, 1)
     edge = IRIS_RADIUS + 0.12 - lap
@@ -193,9 +205,13 @@ def _spots(t: FloatArray, around: FloatArray, count: int, noise: np.random.Gener
 
 
 def _sclera(
-    angle: FloatArray, around: FloatArray, recipe: Recipe, noise: np.random.Generator
+    angle: FloatArray,
+    around: FloatArray,
+    recipe: Recipe,
+    noise: np.random.Generator,
+    pixels: tuple[IntArray, IntArray],
 ) -> FloatArray:
-    """Return the sclera's colour at angles from and round the eye's axis."""
+    """Return the sclera's colour at angles from and round the eye's axis, and at those pixels."""
     limbus = float(np.arcsin(IRIS_RADIUS / EYE_RADIUS))
     years = float(smoothstep(35, 85, np.array(recipe.age)))
     base = (SCLERA + (SCLERA_AGED - SCLERA) * years) * (1 - recipe.skin * SCLERA_MELANIN)
@@ -206,7 +222,7 @@ def _sclera(
     color = color * (1 + cloud[..., None] * np.array([0.02, 0.05, 0.09]))
     to_corner = smoothstep(0.5, 0.98, angle) * (0.55 + 0.45 * np.abs(np.cos(around)))
     color = color + (SCLERA_CORNER - color) * to_corner[..., None]
-    vessels = _vessels(noise) * smoothstep(limbus + 0.02, limbus + 0.22, angle)
+    vessels = _vessels(noise)[pixels] * smoothstep(limbus + 0.02, limbus + 0.22, angle)
     return np.asarray(color + (VESSEL - color) * (vessels * (0.75 + 0.25 * years))[..., None])
 
 

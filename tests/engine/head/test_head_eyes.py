@@ -8,7 +8,15 @@ from scipy.spatial.transform import Rotation
 
 from engine.head import Head, Part, person_head
 from engine.head.parts import eye_texture
-from engine.head.parts.iris import IRIS_RADIUS, IRISES, PUPIL_RADIUS, eye_uvs
+from engine.head.parts.iris import (
+    IRIS_RADIUS,
+    IRISES,
+    PUPIL_RADIUS,
+    SIZE,
+    colors_at,
+    eye_colors,
+    eye_uvs,
+)
 from engine.head.recipe import EYE_COLORS, Recipe
 
 TRIANGLES_OF_AN_EYE = 2_600
@@ -142,3 +150,11 @@ def test_the_outer_corners_flesh_leaves_the_ball_smoothly(head: Head) -> None:
     assert leaving.any()
     along = np.einsum("ij,ij->i", flesh.normals, offset) / np.linalg.norm(offset, axis=1)
     assert along[leaving].min() > np.cos(np.radians(42))
+
+
+@pytest.mark.parametrize("color", ["blue", "dark_brown"])
+def test_single_pixels_are_those_of_the_map(color: str) -> None:
+    recipe = Recipe(eye_color=color, seed=4)
+    rows, columns = np.random.default_rng(0).integers(0, SIZE, (2, 3, 50))
+    found = colors_at(recipe, rows, columns)
+    np.testing.assert_allclose(found, eye_colors(recipe)[rows, columns], atol=1e-12)
