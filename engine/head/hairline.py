@@ -39,6 +39,9 @@ NAPE_TAPER = 0.5
 EDGE_NOISE = ((14.0, 6, 2.1), (5.0, 5, 1.5), (2.2, 7, 1.0))
 """Unevenness of the outline: size of its blobs [mm], seed, depth [mm]."""
 
+AT_ONCE = 1024
+"""Points that are held against every side of the outline at once: what a cache has room for."""
+
 RECESSION_BY_AGE = ((18, 25, 45, 65, 90), (0.0, 0.04, 0.16, 0.3, 0.4))
 """How far towards `RECEDED_OUTLINE` a man's hairline has gone (Norwood II to III by fifty)."""
 RECEDING = 0.62
@@ -104,12 +107,22 @@ def _thinning(points: FloatArray, recipe: Recipe) -> FloatArray:
 
 def distance_inside(points: FloatArray, outline: FloatArray) -> FloatArray:
     """Return the distance from points (n, 2) to a closed outline (k, 2), negative outside."""
-    starts, ends = outline, np.roll(outline, -1, axis=0)
-    side = ends - starts
-    offset = points[:, None, :] - starts
-    share = np.clip((offset * side).sum(axis=2) / (side**2).sum(axis=1), 0, 1)
-    gap = np.linalg.norm(offset - share[..., None] * side, axis=2).min(axis=1)
-    return np.asarray(np.where(inside_outline(points, outline), gap, -gap))
+    found = np.empty(len(points))
+    for start in range(0, len(points), AT_ONCE):
+        chosen = slice(start, start + AT_ONCE)
+        gap = _gap(points[chosen], outline)
+        found[chosen] = np.where(inside_outline(points[chosen], outline), gap, -gap)
+    return found
+
+
+def _gap(points: FloatArray, outline: FloatArray) -> FloatArray:
+    """Return the distance from points (n, 2) to the nearest side of an outline (k, 2)."""
+    side = np.roll(outline, -1, axis=0) - outline
+    offset_z, offset_y = (np.subtract.outer(points[:, a], outline[:, a]) for a in range(2))
+    share = offset_z * side[:, 0] + offset_y * side[:, 1]
+    share = np.clip(share / (side**2).sum(axis=1), 0, 1)
+    square = (offset_z - share * side[:, 0]) ** 2 + (offset_y - share * side[:, 1]) ** 2
+    return np.asarray(np.sqrt(square.min(axis=1)))
 
 
 def inside_outline(points: FloatArray, outline: FloatArray) -> BoolArray:

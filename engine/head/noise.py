@@ -18,7 +18,7 @@ def noise(points: FloatArray, size: float, seed: int) -> FloatArray:
     return np.asarray(map_coordinates(values, (points / size).T, order=3, mode="grid-wrap"))
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def hashed(x: int, y: int, z: int, seed: int) -> float:
     """Return a number in 0..1 that cell (x, y, z) always gets for one seed."""
     h = np.uint32(x) * np.uint32(0x8DA6B343)

@@ -13,6 +13,8 @@ LOST_WEIGHT = 0.005
 between far points and near ones."""
 MOST_WEIGHTS = 128
 """A row keeps at most this many; 35 are usual."""
+ROWS = 1024
+"""How many rows are pruned at once."""
 
 
 def surface_map(
@@ -34,10 +36,16 @@ def surface_map(
         drawn_vertices: Their indices in that level, shape (d,).
         surface_points: Cage index of each tissue point, shape (s,).
     """
-    short = pruned(exact_map(limit, level, drawn_vertices, surface_points))
     row_mirror = _places(limit.levels[level].mirror, drawn_vertices)
     column_mirror = _places(limit.levels[0].mirror, surface_points)
-    return _mirrored(short, row_mirror, column_mirror)
+    control = _control(limit, surface_points)
+    # A few rows at a time: all of them with every weight would take a hundred megabytes.
+    firsts = _firsts(row_mirror)
+    short = [
+        pruned(np.asarray(limit.to_limit[level][drawn_vertices[rows]] @ control))
+        for rows in np.split(firsts, range(ROWS, len(firsts), ROWS))
+    ]
+    return _mirrored(sp.csr_array(sp.vstack(short)), row_mirror, column_mirror)
 
 
 def _places(mirror: IntArray, chosen: IntArray) -> IntArray:
@@ -47,18 +55,23 @@ def _places(mirror: IntArray, chosen: IntArray) -> IntArray:
     return place[mirror[chosen]]
 
 
-def _mirrored(matrix: sp.csr_array, rows: IntArray, columns: IntArray) -> sp.csr_array:
-    """Return `matrix` with each pair of mirrored rows made from the first of the two.
+def _firsts(rows: IntArray) -> IntArray:
+    """Return the first of each pair of mirrored rows, and the rows that are their own image."""
+    return np.flatnonzero(np.arange(len(rows)) <= rows)
+
+
+def _mirrored(half: sp.csr_array, rows: IntArray, columns: IntArray) -> sp.csr_array:
+    """Return the whole map of which `half` has the rows of `_firsts`.
 
     Pruning breaks ties between equal weights by chance; symmetric tissue shall move symmetrically.
     """
     number = np.arange(len(rows))
-    first = np.where(rows == number, 0.5, (number < rows).astype(float))
-    reflected = sp.csr_array(matrix[rows])
-    reflected = sp.csr_array(
-        (reflected.data, columns[reflected.indices], reflected.indptr), shape=matrix.shape
-    )
-    both = sp.diags_array(first) @ matrix + sp.diags_array(1 - first) @ reflected
+    own = np.where(rows == number, 0.5, (number < rows).astype(float))
+    place = np.zeros(len(rows), dtype=np.int64)
+    place[_firsts(rows)] = np.arange(half.shape[0])
+    whole = sp.csr_array(half[place[np.minimum(number, rows)]])
+    reflected = sp.csr_array((whole.data, columns[whole.indices], whole.indptr), shape=whole.shape)
+    both = sp.diags_array(own) @ whole + sp.diags_array(1 - own) @ reflected
     result = sp.csr_array(both)
     result.eliminate_zeros()
     result.sort_indices()
@@ -69,11 +82,15 @@ def exact_map(
     limit: Limit, level: int, drawn_vertices: IntArray, surface_points: IntArray
 ) -> FloatArray:
     """Return the same map with every weight, dense (d, s)."""
+    return np.asarray(limit.to_limit[level][drawn_vertices] @ _control(limit, surface_points))
+
+
+def _control(limit: Limit, surface_points: IntArray) -> FloatArray:
+    """Return what each tissue point moved by one makes of all control points, dense (v, s)."""
     cage_size = limit.to_limit[0].shape[0]
     unit = np.zeros((cage_size, len(surface_points)))
     unit[surface_points, np.arange(len(surface_points))] = 1.0
-    control = limit.solver.solve(unit)
-    return np.asarray(limit.to_limit[level][drawn_vertices] @ control)
+    return np.asarray(limit.solver.solve(unit))
 
 
 def pruned(exact: FloatArray) -> sp.csr_array:

@@ -130,7 +130,11 @@ def rows_of(terms: Iterable[tuple[float, Sequence[Term]]], anchors: Anchors) -> 
 
 def field_of(rows: FloatArray, points: FloatArray) -> FloatArray:
     """Return the displacement at points (k, 3) that `rows` amount to, mm."""
-    return np.asarray(_field(rows, np.ascontiguousarray(points)))
+    total = np.zeros(points.shape)
+    if not len(rows):  # The built-in head itself needs nothing compiled.
+        return total
+    _field(rows, np.ascontiguousarray(points), total)
+    return total
 
 
 def field_at(terms: Sequence[Term], points: FloatArray, anchors: Anchors) -> FloatArray:
@@ -144,72 +148,74 @@ def _row(numbers: Sequence[Sequence[float] | FloatArray]) -> FloatArray:
 
 
 @kept(nogil=True)
-def _field(rows: FloatArray, points: FloatArray) -> FloatArray:
+def _field(rows: FloatArray, points: FloatArray, total: FloatArray) -> None:
     """Sum the terms at every point of the left half and mirror them for the right one."""
-    total = np.zeros_like(points)
-    here = np.zeros(3)
     for i in range(points.shape[0]):
         side = -1.0 if points[i, 0] < 0.0 else 1.0
         x, y, z = side * points[i, 0], points[i, 1], points[i, 2]
-        here[:] = 0.0
+        total[i, 0] = total[i, 1] = total[i, 2] = 0.0
         for k in range(rows.shape[0]):
-            row = rows[k]
-            if row[0] == _BUMP:
-                _add_bump(row, x, y, z, 1.0, here)
-                if row[19] == 0.0:
-                    _add_bump(row, -x, y, z, -1.0, here)
-            elif row[0] == _RAMP:
-                _add_ramp(row, x, y, z, here)
+            if rows[k, 0] == _BUMP:
+                _add_bump(rows, k, x, y, z, 1.0, total, i)
+                if rows[k, 19] == 0.0:
+                    _add_bump(rows, k, -x, y, z, -1.0, total, i)
+            elif rows[k, 0] == _RAMP:
+                _add_ramp(rows, k, x, y, z, total, i)
             else:
-                _add_lip(row, x, y, z, here)
-        total[i, 0] = side * here[0] if x != 0.0 else 0.0
-        total[i, 1] = here[1]
-        total[i, 2] = here[2]
-    return total
+                _add_lip(rows, k, x, y, z, total, i)
+        total[i, 0] = side * total[i, 0] if x != 0.0 else 0.0
 
 
-@kept(nogil=True, inline="always")
-def _add_bump(row: FloatArray, x: float, y: float, z: float, side: float, to: FloatArray) -> None:
-    a, b, c = x - row[1], y - row[2], z - row[3]
-    square = (a * row[4]) ** 2 + (b * row[5]) ** 2 + (c * row[6]) ** 2
+@kept(nogil=True)
+def _add_bump(
+    rows: FloatArray, k: int, x: float, y: float, z: float, side: float, to: FloatArray, i: int
+) -> None:
+    a, b, c = x - rows[k, 1], y - rows[k, 2], z - rows[k, 3]
+    square = (a * rows[k, 4]) ** 2 + (b * rows[k, 5]) ** 2 + (c * rows[k, 6]) ** 2
     if square < _FAINT:
-        weight = np.exp(-0.5 * square)
-        to[0] += side * weight * (row[7] + row[10] * a + row[11] * b + row[12] * c)
-        to[1] += weight * (row[8] + row[13] * a + row[14] * b + row[15] * c)
-        to[2] += weight * (row[9] + row[16] * a + row[17] * b + row[18] * c)
+        weight = math.exp(-0.5 * square)
+        to[i, 0] += (
+            side * weight * (rows[k, 7] + rows[k, 10] * a + rows[k, 11] * b + rows[k, 12] * c)
+        )
+        to[i, 1] += weight * (rows[k, 8] + rows[k, 13] * a + rows[k, 14] * b + rows[k, 15] * c)
+        to[i, 2] += weight * (rows[k, 9] + rows[k, 16] * a + rows[k, 17] * b + rows[k, 18] * c)
 
 
-@kept(nogil=True, inline="always")
-def _add_ramp(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> None:
-    axis = row[1]
+@kept(nogil=True)
+def _add_ramp(
+    rows: FloatArray, k: int, x: float, y: float, z: float, to: FloatArray, i: int
+) -> None:
+    axis = rows[k, 1]
     place = x if axis == 0.0 else y if axis == 1.0 else z
-    along = (place - row[2]) / row[3]
+    along = (place - rows[k, 2]) / rows[k, 3]
     square = 0.0
-    for k in range(3):
-        value = x if k == 0 else y if k == 1 else z
-        square += (max(abs(value - row[8 + k]) - row[11 + k], 0.0) * row[14 + k]) ** 2
+    for n in range(3):
+        value = x if n == 0 else y if n == 1 else z
+        square += (max(abs(value - rows[k, 8 + n]) - rows[k, 11 + n], 0.0) * rows[k, 14 + n]) ** 2
     if square < _FAINT:
-        ease = row[4] / abs(row[3])
+        ease = rows[k, 4] / abs(rows[k, 3])
         rise = ease * (_softplus(along / ease) - _softplus((along - 1.0) / ease))
-        weight = rise * np.exp(-0.5 * square)
-        to[0] += weight * row[5]
-        to[1] += weight * row[6]
-        to[2] += weight * row[7]
+        weight = rise * math.exp(-0.5 * square)
+        to[i, 0] += weight * rows[k, 5]
+        to[i, 1] += weight * rows[k, 6]
+        to[i, 2] += weight * rows[k, 7]
 
 
-@kept(nogil=True, inline="always")
-def _add_lip(row: FloatArray, x: float, y: float, z: float, to: FloatArray) -> None:
-    away = max(row[1] * (y - row[7]), 0.0) / row[2]
-    share = min(x / row[9], 1.0)
-    behind = max(row[8] - 8.0 - z - 16.0 * share**2, 0.0) / 6.0
+@kept(nogil=True)
+def _add_lip(
+    rows: FloatArray, k: int, x: float, y: float, z: float, to: FloatArray, i: int
+) -> None:
+    away = max(rows[k, 1] * (y - rows[k, 7]), 0.0) / rows[k, 2]
+    share = min(x / rows[k, 9], 1.0)
+    behind = max(rows[k, 8] - 8.0 - z - 16.0 * share**2, 0.0) / 6.0
     square = away**2 + behind**2
     if square < _FAINT:
-        weight = away * np.exp(0.5 - 0.5 * square) * (1.0 - share**4) ** 2
-        to[0] += weight * row[3]
-        to[1] += weight * row[4]
-        to[2] += weight * row[5]
+        weight = away * math.exp(0.5 - 0.5 * square) * (1.0 - share**4) ** 2
+        to[i, 0] += weight * rows[k, 3]
+        to[i, 1] += weight * rows[k, 4]
+        to[i, 2] += weight * rows[k, 5]
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def _softplus(x: float) -> float:
     return max(x, 0.0) + math.log1p(math.exp(-abs(x)))

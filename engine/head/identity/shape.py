@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -123,18 +123,21 @@ def warp_of(recipe: Recipe, reference: Head) -> Warp:
     landmarks = reference.landmark_places
     names, places = list(landmarks), np.array(list(landmarks.values()))
 
-    # Every mode moves a place in proportion: so its effect on each landmark is found once.
     eye = anchors["eye"]
     probed = np.vstack([places, eye])
-    effects = {name: field_at(terms, probed, anchors) for name, terms in MODES.items()}
+
+    # Every mode moves a place in proportion: so its effect on each landmark is found once.
+    @cache
+    def effect(name: str) -> FloatArray:
+        return field_at(MODES[name], probed, anchors)
 
     def warped(amplitudes: Mapping[str, float]) -> dict[str, FloatArray]:
         whole, lids = np.zeros_like(probed), np.zeros_like(probed)
         for name, amplitude in amplitudes.items():
             if name in LIDS:
-                lids += amplitude * effects[name]
+                lids += amplitude * effect(name)
             else:
-                whole += amplitude * effects[name]
+                whole += amplitude * effect(name)
         return dict(zip(names, placed(places, whole[:-1], lids[:-1], whole[-1], eye), strict=True))
 
     return Warp(amplitudes_of(recipe, warped), anchors)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-import numpy.typing as npt
 
 from ...arrays import Float32Array, FloatArray
 from ...compiling import kept
@@ -90,10 +89,12 @@ def colors_at(places: Float32Array, table: Float32Array, recipe: Recipe) -> Floa
     names = [field.name for field in fields(Zones)]
     columns = np.array([names.index(name) for name in _KERNEL_ZONES])
     moles = _moles(places, table[:, names.index("front")], look)
-    return _colored(
+    found = np.empty((len(places), 3), dtype=np.float32)
+    _colored(
         places, np.ascontiguousarray(table[:, columns]), numbers, look.base, look.hair, pigments,
-        moles, look.seed,
+        moles, look.seed, found,
     )  # fmt: skip
+    return found
 
 
 _KERNEL_ZONES = (
@@ -113,7 +114,7 @@ def _moles(places: Float32Array, front: Float32Array, look: Complexion) -> Float
     return np.column_stack([np.sin(angle), height, np.cos(angle), radius])
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def _step(low: float, high: float, value: float) -> float:
     share = min(max((value - low) / (high - low), 0.0), 1.0)
     return share * share * (3 - 2 * share)
@@ -129,10 +130,10 @@ def _colored(
     pigments: FloatArray,
     moles: FloatArray,
     seed: int,
-) -> npt.NDArray[np.float32]:
+    found: Float32Array,
+) -> None:
     dark, visible, stubble, freckling = numbers[0], numbers[1], numbers[2], numbers[3]
     age, shaven, sex = numbers[4], numbers[5], numbers[6]
-    found = np.empty((len(places), 3), dtype=np.float32)
     for n in range(len(places)):
         x, y, z = float(places[n, 0]), float(places[n, 1]), float(places[n, 2])
         blood, melanin, yellow, violet = table[n, 0], table[n, 1], table[n, 2], table[n, 3]
@@ -270,4 +271,3 @@ def _colored(
             light += 0.7 * lashes * (lash[c] - light)
             light += 0.95 * nostril * (hole[c] * (0.3 + own) - light)
             found[n, c] = min(max(light, 0.002), 0.98)
-    return found

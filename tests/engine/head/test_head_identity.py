@@ -10,7 +10,7 @@ import pytest
 
 from engine.head import STANDARD, Head, Recipe, people
 from engine.head.anthropometry import measured
-from engine.head.identity import person_from, warp_of
+from engine.head.identity import fields, person_from, warp_of
 from engine.head.identity.fit import targets, tolerance
 from engine.head.standard import reference_head
 
@@ -26,15 +26,25 @@ RECIPES = {
 @cache
 def made(name: str) -> Head:
     """Return a person without hair, which takes time to grow."""
-    reference = reference_head("high")
-    parts = tuple(part for part in reference.parts if part.material != "hair")
-    return person_from(replace(reference, parts=parts), RECIPES[name])
+    return person_from(reference_head("high"), RECIPES[name])
 
 
 def test_the_built_in_recipe_moves_nothing(head: Head) -> None:
     warp = warp_of(STANDARD, head)
     assert warp.is_identity
     assert warp(head.points) == pytest.approx(head.points, abs=1e-9)
+
+
+def test_the_built_in_recipe_needs_nothing_compiled(
+    head: Head, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise AssertionError("the kernel was called")
+
+    monkeypatch.setattr(fields, "_field", fail)
+    person_from(head, STANDARD)
+    with pytest.raises(AssertionError):
+        warp_of(replace(STANDARD, nose_width=1.0), head)
 
 
 @pytest.mark.parametrize("name", RECIPES)

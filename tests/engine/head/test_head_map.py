@@ -10,7 +10,7 @@ from engine.arrays import FloatArray
 from engine.head import LEVELS, Head
 from engine.head.skin import skin_mesh, textured
 from engine.head.standard import Sculpture
-from engine.head.surface_map import LOST_WEIGHT, exact_map, pruned
+from engine.head.surface_map import LOST_WEIGHT, exact_map, pruned, surface_map
 from engine.head.tissue_surface import face_sheet, tissue_surface
 from engine.head.uv import unwrap
 
@@ -44,6 +44,18 @@ def test_common_translation_is_kept(heads: dict[str, Head], exact: tuple[str, Fl
     kept = np.diff(carried.indptr) > 0
     np.testing.assert_allclose(carried.sum(axis=1)[kept], whole.sum(axis=1)[kept], atol=1e-12)
     assert np.abs(whole[~kept]).sum(axis=1).max() <= LOST_WEIGHT  # far behind the tissue
+
+
+def test_half_the_rows_are_pruned_and_the_others_are_their_images(sculpture: Sculpture) -> None:
+    cage, limit = sculpture.cage, sculpture.limit
+    tissue = tissue_surface(cage, sculpture.points, face_sheet(cage))
+    rows = np.arange(len(limit.levels[1].mirror))
+    made = surface_map(limit, 1, rows, tissue.cage_points).toarray()
+    whole = pruned(exact_map(limit, 1, rows, tissue.cage_points)).toarray()
+    mirror = limit.levels[1].mirror
+    firsts = rows < mirror
+    np.testing.assert_allclose(made[firsts], whole[firsts], atol=1e-12)
+    np.testing.assert_array_equal(made[mirror], made[:, tissue.mirror])
 
 
 def test_rows_are_short(head: Head) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from engine.errors import UnknownName
 from engine.head import Head, standard_head
 from engine.head.geometry import smallest_angles, triangle_areas
-from engine.head.hairline import HIDDEN_SCALP, distance_inside, inside_outline
+from engine.head.hairline import AT_ONCE, HIDDEN_SCALP, distance_inside, inside_outline
 from engine.head.topology import Topology, boundary_loops, components
 
 ALL = ("low", "medium", "high", "paper")
@@ -113,6 +114,20 @@ def test_inside_outline() -> None:
     np.testing.assert_array_equal(inside_outline(points, square), [True, True, False, False])
     np.testing.assert_array_equal(inside_outline(points, notched), [True, False, False, False])
     np.testing.assert_allclose(distance_inside(points, square), [1, 0.5, -1, -1])
+
+
+def test_distance_of_many_points_is_that_of_each() -> None:
+    random = np.random.default_rng(3)
+    outline = np.array([[0, 0], [3, 0.5], [2, 2.0], [1, 1.2], [0.2, 3]])
+    points = random.uniform(-1, 4, (2 * AT_ONCE + 17, 2))
+    along = np.linspace(0, 1, 2000)[:, None]
+    border = np.concatenate(
+        [a + along * (b - a) for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True)]
+    )
+    to_border = cKDTree(border).query(points)[0]
+    found = distance_inside(points, outline)
+    np.testing.assert_allclose(np.abs(found), to_border, atol=2e-3)
+    np.testing.assert_array_equal(found > 0, inside_outline(points, outline))
 
 
 def test_unknown_level_names_the_known_ones() -> None:
