@@ -49,7 +49,7 @@ from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
 from .timeline import LAYERS, LONGEST_ONSET, TICKS_PER_SECOND, Keyframe, Timeline
-from .warming import warm_kernels
+from .warming import kernels_are_kept, warm_kernels
 
 __all__ = [
     "ALIKE",
@@ -114,6 +114,7 @@ __all__ = [
     "jolts",
     "judge",
     "keep",
+    "kernels_are_kept",
     "landmarks_68",
     "measure_units",
     "parse_facs",

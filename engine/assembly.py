@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from .arrays import FloatArray
+from .cache import Arrays, cached_arrays, content_key
 from .channels import GROUPS
 from .dynamics import TABLEAUS, Pull
 from .errors import InvalidValue
 from .force_basis import jaw_rides, moving_pull, rest_basis
 from .muscle import LidMuscle
 from .rig import Model, Rig
+from .sources import ENGINE_HASH
 from .stability import largest_frequency, least_substeps
 from .timeline import TICKS_PER_SECOND
 from .tissue import TissueModel, assemble, no_pull
@@ -76,7 +79,19 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
     """
     head, parameters = rig.head, rig.parameters
     tissue = assemble(head, parameters, literal_springs=model.springs == "literal")
-    omega = largest_frequency(tissue.arrays, tissue.layers.normals)
+    moving = model.forces == "current"
+    slow = kept_for(
+        rig,
+        "assembly",
+        (model,),
+        lambda: {
+            "omega": np.array(largest_frequency(tissue.arrays, tissue.layers.normals)),
+            "basis": rest_basis(
+                head, tissue, rig.muscles, ring=model.sphincter, pressing_only=moving
+            ),
+        },
+    )
+    omega = float(slow["omega"].item())
     if tissue.hardened:
         # Masses hold the phases that the linear view leaves out, to just this frequency.
         omega = max(omega, parameters.mass_frequency)
@@ -86,12 +101,11 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
             f"{substeps} substeps a tick are not stable: this rig's fastest mode is "
             f"{omega:.0f} rad/s and {model.integrator} needs at least {least}"
         )
-    moving = model.forces == "current"
     return Assembly(
         rig=rig,
         model=model,
         tissue=tissue,
-        basis=rest_basis(head, tissue, rig.muscles, ring=model.sphincter, pressing_only=moving),
+        basis=slow["basis"],
         pull=moving_pull(head, tissue, rig.muscles, ring=model.sphincter)
         if moving
         else no_pull(tissue.node_count),
@@ -101,6 +115,16 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
         lid_angles=_lid_angles(rig),
         smoothing=_smoothing(rig),
     )
+
+
+def kept_for(rig: Rig, kind: str, parts: tuple[object, ...], build: Callable[[], Arrays]) -> Arrays:
+    """Return arrays that follow from a person's rig and `parts`, kept on disk; see `cached_arrays`.
+
+    On any other head they are built anew: its id does not tell all that the tissue is made of.
+    """
+    if rig.recipe is None:
+        return build()
+    return cached_arrays(kind, content_key(ENGINE_HASH, rig.id, *parts), build, aside=True)
 
 
 def _lid_angles(rig: Rig) -> FloatArray:

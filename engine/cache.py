@@ -17,6 +17,8 @@ from .kept import keep, read_kept
 
 MOST_BYTES = 1_000_000_000
 """Size that the folder's arrays may reach: some hundred people, at all levels."""
+MOST_BYTES_ASIDE = 100_000_000
+"""The same for each folder in it."""
 
 Arrays = dict[str, npt.NDArray[Any]]
 """Arrays of any type by name: who reads them knows which."""
@@ -46,7 +48,9 @@ def content_key(*parts: object) -> str:
     return digest.hexdigest()[:20]
 
 
-def cached_arrays(kind: str, key: str, build: Callable[[], Arrays]) -> Arrays:
+def cached_arrays(
+    kind: str, key: str, build: Callable[[], Arrays], *, aside: bool = False
+) -> Arrays:
     """Return the arrays stored under `kind` and `key`, or build and store them.
 
     A missing, damaged or unwritable cache costs time, never an error.
@@ -55,15 +59,18 @@ def cached_arrays(kind: str, key: str, build: Callable[[], Arrays]) -> Arrays:
         kind: What the arrays are, one word; names the file.
         key: Hash of everything the arrays depend on (`content_key`).
         build: Makes the arrays when they are not stored.
+        aside: Whether to keep them in a folder of their kind, so that many of them, made while
+            somebody drags a slider, push out nothing that takes longer to make.
     """
-    path = cache_folder() / f"{kind}-{key}.npz"
+    folder = cache_folder() / kind if aside else cache_folder()
+    path = folder / f"{kind}-{key}.npz"
     stored = _read(path)
     if stored is not None:
         return {name: np.ascontiguousarray(array) for name, array in stored.items()}
     # In one layout, whether built or read: kernels are compiled for a layout, and a second start
     # would compile them again.
     arrays = {name: np.ascontiguousarray(array) for name, array in build().items()}
-    _write(path, arrays)
+    _write(path, arrays, MOST_BYTES_ASIDE if aside else MOST_BYTES)
     return arrays
 
 
@@ -79,6 +86,6 @@ def _arrays_in(file: IO[bytes]) -> Arrays:
         return {name: arrays[name] for name in arrays.files}
 
 
-def _write(path: Path, arrays: Arrays) -> None:
+def _write(path: Path, arrays: Arrays, most_bytes: int) -> None:
     with suppress(OSError):
-        keep(path, lambda file: np.savez(file, allow_pickle=False, **arrays), MOST_BYTES)
+        keep(path, lambda file: np.savez(file, allow_pickle=False, **arrays), most_bytes)

@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .assembly import Assembly
+from .assembly import Assembly, kept_for
 from .lag import lagged
 from .lanes import Bank, Plan, plan_of
 from .timeline import TICKS_PER_SECOND
@@ -29,11 +29,22 @@ MOST_TIMES = 3
 @lru_cache(maxsize=32)
 def calmed(assembly: Assembly) -> Assembly:
     """Return a rig that banks can step, with the least substeps at which its lips rest."""
+    kept = kept_for(
+        assembly.rig,
+        "calm",
+        (assembly.model, assembly.substeps),
+        lambda: {"substeps": np.array(_least_restful(assembly))},
+    )
+    substeps = int(kept["substeps"].item())
+    return assembly if substeps == assembly.substeps else replace(assembly, substeps=substeps)
+
+
+def _least_restful(assembly: Assembly) -> int:
     plan, least = plan_of(assembly), assembly.substeps
     for substeps in range(least, MOST_TIMES * least):
         if _rests(assembly, replace(plan, substeps=substeps)):
             break
-    return assembly if substeps == least else replace(assembly, substeps=substeps)
+    return substeps
 
 
 def _rests(assembly: Assembly, plan: Plan) -> bool:

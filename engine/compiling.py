@@ -12,11 +12,13 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
+from numba.core.runtime.nrt import rtsys
 
 from .sources import HEAD_HASH, KERNELS_HASH
 
 # Without annotations.
 _function_cache: Callable[..., Any] = FunctionCache
+_jit: Callable[..., Any] = numba.njit
 _cache_file: Callable[..., Any] = IndexDataCacheFile
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -29,7 +31,8 @@ def kept(**options: Any) -> Callable[[F], F]:
     """
 
     def decorate(function: F) -> F:
-        compiled: Any = numba.njit(**options)(function)
+        # Nothing calls them as C functions: such an entry takes its time to compile.
+        compiled: Any = _jit(no_cfunc_wrapper=True, **options)(function)
         if compiled is not function:  # NUMBA_DISABLE_JIT leaves it.
             compiled._cache = _Kept(function)
         return cast(F, compiled)
@@ -48,6 +51,20 @@ def kernel(function: F) -> F:
     )
 
 
+def in_parts(function: F) -> F:
+    """Return a kernel as plain Python around the kernels that it calls.
+
+    For what is called once: the parts are compiled anyway, and the whole would take as long again.
+    """
+    return cast(F, getattr(function, "py_func", function))
+
+
+def is_kept(function: Callable[..., object]) -> bool:
+    """Return whether compiled code of a kernel lies on disk."""
+    cache = getattr(function, "_cache", None)
+    return not isinstance(cache, _Kept) or cache.holds_any()
+
+
 class _Kept(NullCache):
     """Numba's cache under another stamp; its folder is looked for when it is first needed."""
 
@@ -60,12 +77,21 @@ class _Kept(NullCache):
         return self._files.cache_path
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the code kept for a signature, or None."""
-        return self._files.load_overload(sig, target_context)
+        """Return the code kept for a signature, or None.
+
+        Numba's own way first reads in all that a compiler knows, a quarter of a second; compiled
+        code needs only the runtime.
+        """
+        rtsys.initialize(target_context)
+        return self._files._load_overload(sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the code compiled for a signature."""
         self._files.save_overload(sig, data)
+
+    def holds_any(self) -> bool:
+        """Return whether there is code for some signature."""
+        return bool(self._files._cache_file._load_index())
 
     @cached_property
     def _files(self) -> Any:

@@ -599,6 +599,26 @@ def add_basis_forces(
 
 
 @kernel
+def put(target: FloatArray, values: FloatArray) -> None:
+    """Set `target` to `values`.
+
+    Written out: for `target[:] = values` numba compiles the sentence it might have to fail with,
+    which takes as long as all forces together.
+    """
+    for c in range(values.shape[0]):
+        for i in range(values.shape[1]):
+            target[c, i] = values[c, i]
+
+
+@kernel
+def clear(target: FloatArray) -> None:
+    """Set `target` to 0."""
+    for c in range(target.shape[0]):
+        for i in range(target.shape[1]):
+            target[c, i] = 0.0
+
+
+@kernel
 def static_forces(
     x: FloatArray,
     tissue: Tissue,
@@ -612,15 +632,13 @@ def static_forces(
 
     `behind` is the share of the tick that is still to come.
     """
-    force[:] = skull.load
+    put(force, skull.load)
     add_spring_forces(x, tissue.springs, scratch.tension, force)
     add_anchor_forces(x, tissue.anchors, skull, behind, force)
-    if tissue.prisms.corners.shape[0] > 0:
-        add_prism_forces(x, tissue.prisms, scratch.terms, force)
+    add_prism_forces(x, tissue.prisms, scratch.terms, force)
     if tissue.plate.values.shape[0] > 0:
         add_plate_forces(x, tissue.rest, tissue.plate, scratch.tension, force)
-    if tissue.pressure.quads.shape[0] > 0:
-        add_pressure_forces(x, skull.bone, tissue.pressure, force)
+    add_pressure_forces(x, skull.bone, tissue.pressure, force)
     if pull.kinds.shape[0] > 0:
         add_muscle_forces(x, pull, tissue.grip, force)
 
@@ -821,10 +839,10 @@ def advance(
     stages = tableau.shape[0]
     for step in range(substeps):
         behind = 1.0 - (step + 0.5) / substeps
-        work.x[:] = x
-        work.v[:] = v
-        work.slope_x[:] = 0.0
-        work.slope_v[:] = 0.0
+        put(work.x, x)
+        put(work.v, v)
+        clear(work.slope_x)
+        clear(work.slope_v)
         for stage in range(max(stages, 1)):
             accelerations(work.x, work.v, tissue, skull, pull, work.scratch, work.force, behind)
             if stages > 0:

@@ -12,7 +12,7 @@ has inertia and damping of its own: the plate, a tenth of a gram, has none.
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
 from .arrays import FloatArray
 from .compiling import kernel
@@ -59,7 +59,7 @@ def give_to_skin(angles: FloatArray, skin: FloatArray, shares: FloatArray) -> No
     for side in range(2):
         for lid in range(2):
             pushed = shares[lid] * (skin[2 * side + lid] - angles[side, lid])
-            angles[side, lid] += np.round(pushed / GRID) * GRID
+            angles[side, lid] += math.floor(pushed / GRID + 0.5) * GRID
 
 
 @kernel

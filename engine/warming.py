@@ -10,7 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from .compiling import is_kept
 from .head import head_from_mesh
+from .lanes.advance import advance
 from .rig import Rig, rig_from_head
 from .simulator import Simulator
 from .timeline import Keyframe
@@ -21,13 +23,22 @@ HALF_WIDTH, TOP, BOTTOM = 60.0, 60.0, -90.0
 """Of the patch, mm."""
 
 
-def warm_kernels() -> None:
-    """Compile or load every kernel that a live face needs."""
-    rig = _patch()
+def warm_kernels(rig: Rig | None = None) -> None:
+    """Compile or load every kernel that a live face needs.
+
+    Args:
+        rig: Whose face is moved for it; None takes a patch of skin, which needs no head.
+    """
+    rig = rig or _patch()
     simulator = Simulator(rig, model=replace(rig.model, integrator="verlet"), threads=1)
     simulator.add("face")
     simulator.apply("face", Keyframe(action_units={"AU12": 1.0}))
     simulator.step()
+
+
+def kernels_are_kept() -> bool:
+    """Return whether the kernels lie compiled on disk, so that `warm_kernels` only loads them."""
+    return is_kept(advance)
 
 
 def _patch() -> Rig:

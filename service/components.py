@@ -18,6 +18,7 @@ from .commands import live_model
 from .embedded import EmbeddedRunner
 from .guard import RateLimit
 from .insight import Insight
+from .kernels import compile_kernels
 from .loop_delay import LoopDelay
 from .metrics import Metrics
 from .rigs import Rigs
@@ -126,12 +127,14 @@ class Components:
         """Build the first rig and compile every kernel a face needs."""
         try:
             self.stage = "building the standard rig, compiling the simulation"
-            compiling = asyncio.create_task(asyncio.to_thread(warm_kernels))
+            compiling = asyncio.create_task(compile_kernels())
             try:
                 rig = await self.rigs.get("standard")
                 self.stage = "compiling the simulation"
             finally:
                 await compiling
+            self.stage = "loading the simulation"
+            await asyncio.to_thread(warm_kernels, rig)
             self.stage = "writing the surface"
             surface = asyncio.create_task(self.rigs.surface(rig))
             try:

@@ -27,8 +27,9 @@ async def serve_until_stopped(settings: Settings, console: Console) -> None:
         OSError: If the address cannot be used.
     """
     take_short_turns()
-    # Until it is ready: what a start makes is no garbage.
+    # Until it is ready: what a start makes is no garbage, and what was imported never will be.
     gc.disable()
+    gc.freeze()
     listener = listen(settings.host, settings.port)
     app = create_app(settings)
     server = server_of(app, settings)

@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from ..arrays import FloatArray
 from ..errors import UnknownName
@@ -241,6 +240,8 @@ def sparse_nnls(columns: FloatArray, target: FloatArray, spare: FloatArray) -> F
         target: b, shape (p,).
         spare: s, least correlation at which each column takes part, shape (k,).
     """
+    from scipy.optimize import nnls  # Here: a start does without.
+
     sizes = np.linalg.norm(columns, axis=0)
     used = sizes > 1e-9
     scaled = columns[:, used] / sizes[used]

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from ..arrays import FloatArray
 from ..frame import Frame
@@ -126,6 +125,8 @@ class Search:
 
     def _step(self) -> FloatArray:
         """Solve the linear problem within the bounds and the trust region, shape (c,)."""
+        from scipy.optimize import lsq_linear  # Here: a start does without.
+
         count = len(self.values)
         matrix = np.vstack([self._slopes, self._effort * np.eye(count)])
         right = -np.concatenate([self._misfit, self._effort * self.values])

@@ -177,7 +177,14 @@ def part(function: Callable[..., Any]) -> Any:
     """Compile what takes or returns lanes, for use in kernels."""
     if TYPE_CHECKING:
         return function
-    return numba.njit(error_model="numpy", forceinline=True)(function)
+    jit: Callable[..., Any] = numba.njit  # Its annotations leave out what it takes.
+    compile_part = jit(
+        error_model="numpy",
+        forceinline=True,
+        no_cfunc_wrapper=True,  # Never called from outside: compiling the ways in takes as long.
+        no_cpython_wrapper=True,
+    )
+    return compile_part(function)
 
 
 @part

@@ -98,7 +98,9 @@ def skin_angles(channel: IntArray, place: FloatArray, y: FloatArray, z: FloatArr
         turned = math.degrees(math.atan2(y[k] * z0 - z[k] * y0, y[k] * y0 + z[k] * z0))
         angles[channel[k]] += -turned if channel[k] % 2 == 0 else turned
         count[channel[k]] += 1.0
-    return angles / np.maximum(count, 1.0)
+    for lid in range(4):
+        angles[lid] /= max(count[lid], 1.0)
+    return angles
 
 
 def ring_and_spoke(name: str) -> tuple[str, int, str]:

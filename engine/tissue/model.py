@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..compiling import in_parts
 from ..dynamics import (
     Anchors,
     Plate,
@@ -252,7 +253,8 @@ def _dead_load(arrays: Tissue, layers: Layers) -> FloatArray:
     force = np.zeros_like(arrays.rest)
     n = len(layers.normals)
     skull = rest_skull(arrays, layers, np.zeros_like(arrays.rest))
-    static_forces(arrays.rest, arrays, skull, no_pull(n), scratch_for(arrays), force)
+    scratch = scratch_for(arrays)
+    in_parts(static_forces)(arrays.rest, arrays, skull, no_pull(n), scratch, force)
     return -force
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine import cache
+from engine import assembly, builtin_rig, cache
+from engine.assembly import compile_rig
 from engine.cache import cached_arrays
 from engine.kept import keep
 
@@ -48,3 +49,28 @@ def test_a_file_that_cannot_be_written_in_full_leaves_nothing(tmp_path: Path) ->
     with pytest.raises(RuntimeError):
         keep(tmp_path / "face.glb", fail, 1000)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_made_often_pushes_out_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RISORIUS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(cache, "MOST_BYTES_ASIDE", 10_000)
+    cached_arrays("head", "slow", lambda: {"values": np.zeros(1000)})
+    for step in range(3):
+        cached_arrays("assembly", f"{step}", lambda: {"values": np.zeros(1000)}, aside=True)
+        os.utime(tmp_path / "assembly" / f"assembly-{step}.npz", (step + 1, step + 1))
+    assert [path.name for path in (tmp_path / "assembly").iterdir()] == ["assembly-2.npz"]
+    assert (tmp_path / "head-slow.npz").exists()
+
+
+def test_a_rig_read_from_disk_steps_as_one_that_was_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig = builtin_rig("standard")
+    monkeypatch.setenv("RISORIUS_CACHE_DIR", str(tmp_path))
+    made = compile_rig.__wrapped__(rig, rig.model)
+    monkeypatch.setattr(assembly, "rest_basis", lambda *a, **k: pytest.fail("made again"))
+    read = compile_rig.__wrapped__(rig, rig.model)
+    assert np.array_equal(made.basis, read.basis)
+    assert (made.omega, made.substeps) == (read.omega, read.substeps)

@@ -1,0 +1,47 @@
+"""The kernels of live faces, compiled beside everything else that a first start does."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+from pathlib import Path
+
+import engine
+from engine import kernels_are_kept
+
+_SCRIPT = "import gc; gc.disable(); import engine; engine.warm_kernels()"
+
+
+async def compile_kernels() -> None:
+    """Compile the kernels that were never compiled on this machine.
+
+    In a process of its own, which keeps them on disk: compiling holds the interpreter, and the
+    first rig would be built after it instead of beside it.
+    """
+    if not await asyncio.to_thread(kernels_are_kept):
+        await _compile_apart()
+
+
+async def _compile_apart() -> None:
+    """Compile in a process; what it fails to do is done where a kernel is first called."""
+    home = str(Path(engine.__file__).parents[1])
+    path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
+    try:
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-c",
+            _SCRIPT,
+            env={**os.environ, "PYTHONPATH": path},
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.DEVNULL,
+            stderr=asyncio.subprocess.DEVNULL,
+        )
+    except OSError:
+        return
+    try:
+        await process.wait()
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
