@@ -27,6 +27,7 @@ from .head import (
     paper_head,
     people,
     person_head,
+    reference_head,
     tissue_of_life,
 )
 from .head.storage import source_key
@@ -547,7 +548,8 @@ def rig_from_recipe(recipe: Recipe, *, name: str = "person", level: str = "high"
     rig = rig_from_head(
         person_head(recipe, level),
         parameters=living_tissue(recipe),
-        fitted_on=person_head(STANDARD, level),
+        # Fitted on the standard person, whose tissue is that of the head that all come from.
+        fitted_on=None if recipe == STANDARD else reference_head(level),
     )
     strength = muscle_strength(recipe) / muscle_strength(STANDARD)
     muscles = tuple(_as_strong(muscle, strength) for muscle in rig.muscles)

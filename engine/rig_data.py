@@ -72,6 +72,8 @@ def load_emotions() -> dict[str, Emotion]:
 
 def _muscle(entry: Mapping[str, Any], head: Head, size: float) -> Muscle:
     values = dict(entry)
+    if "force_scale" in values:
+        values["force_scale"] = float(values["force_scale"])
     for name in _SIZED_FIELDS:
         if name in values:
             values[name] = values[name] * size

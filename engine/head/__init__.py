@@ -17,7 +17,7 @@ from .identity import Person, muscle_strength, people, tissue_of_life
 from .mesh import head_from_mesh, read_head
 from .recipe import STANDARD, Recipe, recipe_attributes
 from .skin import LEVELS
-from .standard import paper_head, person_head, standard_head
+from .standard import paper_head, person_head, reference_head, standard_head
 
 __all__ = [
     "BULGE_HEIGHT",
@@ -40,6 +40,7 @@ __all__ = [
     "person_head",
     "read_head",
     "recipe_attributes",
+    "reference_head",
     "standard_head",
     "tissue_of_life",
 ]

@@ -16,7 +16,9 @@ from engine import (
     builtin_rig,
     rig_from_recipe,
 )
+from engine.head import STANDARD, person_head, reference_head
 from engine.muscle import LidMuscle
+from engine.rig import rig_from_head
 from engine.tissue import TissueParameters
 
 TABLE_1 = (1, 2, 4, 5, 6, 7, 9, 10, 12, 14, 15, 16, 17, 20, 23, 25, 26)
@@ -42,6 +44,16 @@ def test_every_recipe_names_muscles_that_exist_and_a_source(standard_rig):
         assert emotion.source
         for term in emotion.terms:
             standard_rig.resolve_unit(term.key)
+
+
+def test_muscles_are_fitted_on_the_standard_person(standard_rig):
+    """Its tissue is that of the head that all people come from, which needs no hair and paint."""
+    person = person_head(STANDARD)
+    fitted = [
+        rig_from_head(person, parameters=TissueParameters(), fitted_on=head).muscles
+        for head in (person, reference_head("high"))
+    ]
+    assert repr(fitted[0]) == repr(fitted[1]) == repr(standard_rig.muscles)
 
 
 def test_curves_rise(standard_rig):
