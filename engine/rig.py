@@ -16,7 +16,7 @@ from .channels import GROUPS, LIMITS, MIRRORED, Channels
 from .combination import SIDES, Combination, together
 from .emotion import Emotion, find_emotion
 from .errors import EngineError, InvalidValue, UnknownName
-from .facs import ActionUnit, parse_facs, split_side
+from .facs import ActionUnit, FacsWarning, parse_facs, print_facs, split_side
 from .force_basis import whole_pull
 from .head import (
     LEVELS,
@@ -224,7 +224,7 @@ class Rig:
             name, side = key, ""
         if key in self.action_units:
             return self.action_units[key], ""
-        if name not in self.action_units:
+        if name not in self.action_units or side not in ("", *SIDES):
             raise UnknownName("action unit", key, self.action_units)
         return self.action_units[name], side
 
@@ -258,14 +258,9 @@ class Rig:
         """
         if keyframe.layer not in LAYERS:
             raise UnknownName("layer", keyframe.layer, LAYERS)
-        warnings = []
+        warnings = [str(warning) for warning in self.unit_warnings(keyframe.action_units)]
         for key, value in keyframe.action_units.items():
-            unit, side = self.resolve_unit(key)
             _check_range(key, value, 0.0, 1.0)
-            if unit.still:
-                warnings.append(f"{key} moves nothing on this rig")
-            elif unit.one_sided and not side and value:
-                warnings.append(f"{key} is one-sided in FACS; without L or R it is the left one")
         for name, value in keyframe.muscles.items():
             least = least_activation(self.muscle(name))
             _check_range(name, value, least, MAX_ACTIVATION)
@@ -282,6 +277,23 @@ class Rig:
             value = getattr(keyframe, name)
             if value is not None:
                 _check_range(name, value, 0.0, 3600.0)
+        return warnings
+
+    def unit_warnings(self, units: Mapping[str, float]) -> list[FacsWarning]:
+        """Return what to know of units at intensities by "AU12", "L12" or "R12" on this rig.
+
+        Raises:
+            UnknownName: For a unit the rig does not have.
+        """
+        warnings = []
+        for key, value in units.items():
+            unit, side = self.resolve_unit(key)
+            if unit.still:
+                message = f"{key} moves nothing on this rig"
+                warnings.append(FacsWarning("still", (key,), message))
+            elif unit.one_sided and not side and value:
+                message = f"{key} is one-sided in FACS; without L or R it is the left one"
+                warnings.append(FacsWarning("one_sided", (key,), message))
         return warnings
 
     def at_level(self, level: str) -> Rig:
@@ -315,7 +327,7 @@ class Rig:
             tissue: Tissue parameters by name.
             muscles: By full muscle name, the fields to change.
             action_units: By name, `{"muscles": {"zygomatic_major": 1.0}, "jaw": 0, "title": …}`.
-            emotions: By name, a FACS string, or `{"recipe": …, "synonyms": […]}`.
+            emotions: By name, a FACS string, or `{"recipe": …, "scale": …, "synonyms": […]}`.
             name: Of the new rig.
 
         Raises:
@@ -500,10 +512,14 @@ class Rig:
 
     def _custom_emotion(self, label: str, spec: object) -> Emotion:
         recipe = spec.get("recipe") if isinstance(spec, Mapping) else spec
+        scale = spec.get("scale", "linear") if isinstance(spec, Mapping) else "linear"
         if not isinstance(recipe, str) or not label.strip():
             raise InvalidValue(f"emotion {label!r}: expected a FACS string such as '6C+12D'")
-        for term in parse_facs(recipe):
+        terms = parse_facs(recipe, str(scale))
+        for term in terms:
             self.resolve_unit(term.key)
+        if scale != "linear":  # Recipes are kept on one scale, with the same intensities.
+            recipe = print_facs(terms)
         synonyms = spec.get("synonyms", ()) if isinstance(spec, Mapping) else ()
         if not isinstance(synonyms, list | tuple) or not all(isinstance(w, str) for w in synonyms):
             raise InvalidValue(f"emotion {label!r}: synonyms are {synonyms!r}; expected words")

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Any
 
-from .errors import InvalidNotation, InvalidTrack
-from .facs import LETTERS, parse_facs
+from .errors import InvalidNotation, InvalidTrack, UnknownName
+from .facs import LETTERS, parse_facs, scale_named
 
 LAYERS = ("idle", "mood", "emotion", "speech", "puppet")
 """Layers from the lowest to the highest; a higher one overrides a lower, muscle by muscle."""
@@ -140,7 +140,7 @@ def ticks(seconds: float) -> int:
 
 _MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head", "tongue")
 _NUMBERS = ("time", "fade_out", "weight")
-_KNOWN = {f.name for f in fields(Keyframe)} | {"facs"}
+_KNOWN = {f.name for f in fields(Keyframe)} | {"facs", "scale"}
 
 
 def _keyframe(index: int, entry: object) -> Keyframe:
@@ -152,10 +152,12 @@ def _keyframe(index: int, entry: object) -> Keyframe:
             f"keyframe {index}: field {unknown[0]!r} is not known; known are {sorted(_KNOWN)}"
         )
     values: dict[str, Any] = {}
+    scale = _scale(index, entry.get("scale", "linear"))
     for name in _MAPPINGS:
-        values[name] = _numbers(index, name, entry.get(name, _NOTHING))
+        letters = scale_named(scale) if name == "action_units" else LETTERS
+        values[name] = _numbers(index, name, entry.get(name, _NOTHING), letters)
     if "facs" in entry:
-        values["action_units"] = {**_facs(index, entry["facs"]), **values["action_units"]}
+        values["action_units"] = {**_facs(index, entry["facs"], scale), **values["action_units"]}
     for name in _NUMBERS:
         if name in entry:
             values[name] = _number(index, name, entry[name])
@@ -173,11 +175,19 @@ def _keyframe(index: int, entry: object) -> Keyframe:
     return Keyframe(**values)
 
 
-def _facs(index: int, value: object) -> dict[str, float]:
+def _scale(index: int, value: object) -> str:
+    try:
+        scale_named(str(value))
+    except UnknownName as error:
+        raise InvalidTrack(f"keyframe {index}: {error}; known are {error.known}") from error
+    return str(value)
+
+
+def _facs(index: int, value: object, scale: str) -> dict[str, float]:
     if not isinstance(value, str):
         raise InvalidTrack(f"keyframe {index}: facs is {value!r}; expected a string")
     try:
-        return {term.key: term.intensity for term in parse_facs(value)}
+        return {term.key: term.intensity for term in parse_facs(value, scale)}
     except InvalidNotation as error:
         raise InvalidTrack(f"keyframe {index}: facs: {error}") from error
 
@@ -193,16 +203,18 @@ def _emotion(index: int, value: object) -> tuple[str, float]:
     )
 
 
-def _numbers(index: int, name: str, value: object) -> dict[str, float]:
+def _numbers(
+    index: int, name: str, value: object, letters: Mapping[str, float]
+) -> dict[str, float]:
     if not isinstance(value, Mapping):
         raise InvalidTrack(f"keyframe {index}: {name} is {value!r}; expected an object")
     items: Iterable[tuple[object, object]] = value.items()
-    return {str(key): _intensity(index, f"{name}.{key}", number) for key, number in items}
+    return {str(key): _intensity(index, f"{name}.{key}", number, letters) for key, number in items}
 
 
-def _intensity(index: int, name: str, value: object) -> float:
-    if isinstance(value, str) and value.upper() in LETTERS:
-        return LETTERS[value.upper()]
+def _intensity(index: int, name: str, value: object, letters: Mapping[str, float]) -> float:
+    if isinstance(value, str) and value.upper() in letters:
+        return letters[value.upper()]
     return _number(index, name, value)
 
 

@@ -129,15 +129,20 @@ def analyze(
 
 
 def analyze_facs(
-    rig: Rig, facs: str, *, model: Model | None = None, progress: Progress | None = None
+    rig: Rig,
+    facs: str,
+    *,
+    scale: str = "linear",
+    model: Model | None = None,
+    progress: Progress | None = None,
 ) -> Analysis:
     """Return the analysis of a FACS string such as "12C+15C", settled on a fresh face of `rig`.
 
     Raises:
         InvalidNotation: If the string cannot be read.
-        UnknownName: For a unit the rig does not have.
+        UnknownName: For a unit the rig does not have, or a scale that there is not.
     """
-    units = {term.key: term.intensity for term in parse_facs(facs)}
+    units = {term.key: term.intensity for term in parse_facs(facs, scale)}
     simulator = Simulator(rig, model=model)
     simulator.add("face")
     simulator.apply("face", Keyframe(action_units=units, fade=UNIT_FADE))

@@ -26,6 +26,12 @@ def test_keyframes_come_out_in_order_of_time():
     assert timeline.duration == 4.0
 
 
+def test_letters_are_read_on_the_scale_that_a_keyframe_names():
+    entry = {"scale": "banded", "facs": "12A+15:0.37", "action_units": {"AU4": "d"}}
+    (keyframe,) = Timeline.from_json({"timeline": [entry]}).keyframes
+    assert keyframe.action_units == {"AU12": 0.1, "AU15": 0.37, "AU4": 0.9}
+
+
 def test_what_is_written_reads_back_the_same():
     timeline = Timeline.from_json(GOOD)
     assert Timeline.from_json(timeline.to_json()) == timeline
@@ -51,6 +57,7 @@ def test_without_a_duration_it_lasts_a_second_longer_than_it_plays():
         ({"timeline": [{"emotion": 5}]}, "emotion is 5"),
         ({"timeline": [{"time": 10**400}]}, "keyframe 0: time"),
         ({"timeline": [{"time": 0}, {"facs": "12Z"}]}, "keyframe 1: facs"),
+        ({"timeline": [{"scale": "log"}]}, "keyframe 0: .*'log'"),
         ({"timeline": [{"time": 0}], "duration": "long"}, "duration"),
         ({"timeline": [{"time": 0}], "duration": 10**400}, "duration"),
         ({"timeline": [{"time": 0}], "duration": -2}, "must lie between"),
