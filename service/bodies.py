@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     JsonValue,
@@ -31,7 +32,10 @@ Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-180, le=1
 Millimetres = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-100, le=100)]
 Activation = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1, le=MAX_ACTIVATION)]
 Name = Annotated[str, Field(min_length=1, max_length=64)]
-Letter = Literal["A", "B", "C", "D", "E"]
+Letter = Annotated[
+    Literal["A", "B", "C", "D", "E"],
+    BeforeValidator(lambda value: value.upper() if isinstance(value, str) else value),
+]
 LayerName = Literal["idle", "mood", "emotion", "speech", "puppet"]
 Scale = Literal["linear", "banded"]
 
@@ -117,14 +121,29 @@ class Tongue(Body):
     thrust: Millimetres | None = None
 
 
-class Controls(Body):
-    """Commands to one layer of a face; what is not named stays as it is."""
+class Units(Body):
+    """Action units, by name and as a FACS string; where both name one, the name counts."""
 
     action_units: dict[Name, Share | Letter] | None = Field(
         default=None, max_length=128, examples=[{"AU12": 0.8, "L4": "B"}]
     )
-    facs: str | None = Field(default=None, max_length=512, examples=["1C+2C+L12D+26"])
-    scale: Scale = Field(default="linear", description="How letters are read.")
+    facs: str | None = Field(default=None, max_length=2048, examples=["1C+2C+L12D+26"])
+    scale: Scale = Field(
+        default="linear",
+        description="How letters are read: in even steps (A 0.2 to E 1), or by FACS' uneven bands "
+        "(0.1, 0.2, 0.55, 0.9, 1).",
+    )
+
+
+class FacsRequest(Units):
+    """FACS to read for a rig, or units to write as FACS."""
+
+    rig: Name = "standard"
+
+
+class Controls(Units):
+    """Commands to one layer of a face; what is not named stays as it is."""
+
     muscles: dict[Name, Activation] | None = Field(
         default=None, max_length=256, description="Below 0 only for air and lids."
     )

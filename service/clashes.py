@@ -1,51 +1,59 @@
-"""What a command says twice, or in vain: named to whoever sent it, never dropped in silence."""
+"""What a command says twice, or in vain, or against FACS: named to whoever sent it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
-from engine import Keyframe, Rig, parse_facs, unit_key
+from engine import FacsWarning, Keyframe, Rig, broken_rules, unit_key
 
-from .bodies import Controls
+from .bodies import Units
+from .facs import named_units, one_key, playable
 
 
-def clashes(controls: Controls, keyframe: Keyframe, rig: Rig) -> list[str]:
-    """Return a sentence about each thing that `controls` say in more than one way.
+def clashes(
+    command: Units, keyframe: Keyframe, rig: Rig, held: Mapping[str, float] | None = None
+) -> list[FacsWarning]:
+    """Return a warning about each thing that `command` says in more than one way, or in vain.
 
     Args:
-        controls: What a client sent.
+        command: What a client sent.
         keyframe: The command made of it, checked against the rig.
         rig: Whose units they are.
+        held: What its layer holds with it, by key; without it, what the keyframe names.
     """
-    return [*_repeated(controls, rig), *_sides(keyframe, rig), *_overruled(keyframe, rig)]
+    return [
+        *playable(command, rig).warnings,
+        *_repeated(command, rig),
+        *_sides(keyframe, rig),
+        *_overruled(keyframe, rig),
+        *_against_facs(keyframe, rig, held),
+    ]
 
 
-def _repeated(controls: Controls, rig: Rig) -> Iterator[str]:
+def _repeated(command: Units, rig: Rig) -> Iterator[FacsWarning]:
     """A unit named again: the last one of a FACS string counts, and numbers before strings."""
     seen: dict[str, str] = {}
-    terms = parse_facs(controls.facs) if controls.facs is not None else ()
-    named = [("facs", term.key) for term in terms]
-    named += [("action_units", key) for key in controls.action_units or ()]
-    for place, key in named:
-        unit, side = rig.resolve_unit(key)
-        name = unit_key(unit.name, side)
-        if name in seen:
-            where = f"twice in {place}" if seen[name] == place else "in facs and in action_units"
-            yield f"{name} is named {where}; the latter counts"
-        seen[name] = place
+    for named in named_units(command, rig):
+        key, place = named.key, named.place
+        if key in seen:
+            where = f"twice in {place}" if seen[key] == place else "in facs and in action_units"
+            message = f"{key} is named {where}; the latter counts"
+            yield FacsWarning("named_once", (key,), message)
+        seen[key] = place
 
 
-def _sides(keyframe: Keyframe, rig: Rig) -> Iterator[str]:
+def _sides(keyframe: Keyframe, rig: Rig) -> Iterator[FacsWarning]:
     """A unit named for both sides and for one: the one side counts there."""
     resolved = [rig.resolve_unit(key) for key in keyframe.action_units]
     both = {unit.name for unit, side in resolved if not side}
     for unit, side in resolved:
         if side and unit.name in both:
             one = unit_key(unit.name, side)
-            yield f"{unit.name} and {one} are both named; {one} counts on its side"
+            message = f"{unit.name} and {one} are both named; {one} counts on its side"
+            yield FacsWarning("side_over_both", (unit.name, one), message)
 
 
-def _overruled(keyframe: Keyframe, rig: Rig) -> Iterator[str]:
+def _overruled(keyframe: Keyframe, rig: Rig) -> Iterator[FacsWarning]:
     """A unit part of which is also commanded by itself: what is named itself counts."""
     own = {name: name.partition(".")[0] for name, value in keyframe.muscles.items() if value}
     for key, intensity in keyframe.action_units.items():
@@ -54,11 +62,29 @@ def _overruled(keyframe: Keyframe, rig: Rig) -> Iterator[str]:
             continue
         for muscle, stem in own.items():
             if _moves(unit.muscles, muscle, stem, side):
-                yield f"{muscle} is named itself, so {key} does not move it"
+                message = f"{muscle} is named itself, so {key} does not move it"
+                yield FacsWarning("named_itself", (key,), message)
         for place in unit.pose:
             group, axis = place.split(".")
             if axis in getattr(keyframe, group):
-                yield f"{place} is named itself, so {key} does not move it"
+                message = f"{place} is named itself, so {key} does not move it"
+                yield FacsWarning("named_itself", (key,), message)
+
+
+def _against_facs(
+    keyframe: Keyframe, rig: Rig, held: Mapping[str, float] | None
+) -> Iterator[FacsWarning]:
+    """A rule of FACS that this command breaks, by itself or with what its layer holds."""
+    named = {one_key(key, rig) for key, value in keyframe.action_units.items() if value}
+    here = keyframe.action_units if held is None else held
+    for warning in broken_rules({one_key(key, rig): value for key, value in here.items()}):
+        # A layer may hold L12 and R12 where AU12 was named, and the other way round.
+        if _stems(named) & _stems(warning.units):
+            yield warning
+
+
+def _stems(keys: Iterable[str]) -> set[str]:
+    return {key.removeprefix("AU").lstrip("LRTB") for key in keys}
 
 
 def _moves(weights: Mapping[str, float], muscle: str, stem: str, side: str) -> bool:

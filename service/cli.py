@@ -351,6 +351,9 @@ def measure(
 @app.command()
 def analyze(
     facs: Annotated[str, typer.Option(help="Expression to look into, such as 12C+15C.")],
+    scale: Annotated[
+        str, typer.Option(help="How its letters are read: linear or banded.")
+    ] = "linear",
     rig: Annotated[str, typer.Option(help="Rig to put it on, or a person.")] = "standard",
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
@@ -364,6 +367,7 @@ def analyze(
             data = analyze_facs(
                 builtin_rig(rig),
                 facs,
+                scale=scale,
                 progress=lambda share: status.update(f"settling every action unit: {share:.0%}"),
             ).to_json()
     except EngineError as error:

@@ -246,6 +246,7 @@ class Clips:
             "simulation_seconds": round(simulated - started, 3),
             "writing_seconds": round(ended - simulated, 3),
             "times_real_time": round(timeline.duration / max(ended - started, 1e-6), 2),
+            "scales": sorted({keyframe.scale for keyframe in request.timeline}),
             "warnings": warnings,
         }
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from engine import (
-    LETTERS,
     EngineError,
     Keyframe,
     Model,
@@ -17,7 +16,6 @@ from engine import (
     blend,
     format_facs,
     hold_units,
-    parse_facs,
     unit_key,
 )
 
@@ -30,9 +28,7 @@ from .bodies import (
 )
 from .clashes import clashes
 from .errors import Unprocessable, refused_by_engine
-
-# FACS' own bands of the intensity scale are uneven: trace, slight, marked, severe, maximum.
-BANDED: Mapping[str, float] = {"A": 0.10, "B": 0.20, "C": 0.55, "D": 0.90, "E": 1.00}
+from .facs import playable
 
 
 @dataclass(frozen=True)
@@ -52,11 +48,14 @@ class Played:
     source: str
 
 
-def controls_keyframe(controls: Controls, *, replace: bool) -> Keyframe:
+def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyframe:
     """Return the keyframe that `controls` ask for; with `replace`, the layer holds nothing else.
 
+    Units of FACS that the rig does not have are left out; `clashes` names them.
+
     Raises:
-        Unprocessable: For a FACS string that cannot be read, or what is not available yet.
+        Unprocessable: For a FACS string that cannot be read, a unit that neither FACS nor the rig
+            has, or what is not available yet.
     """
     for name in ("arkit", "visemes"):
         if getattr(controls, name) is not None:
@@ -65,7 +64,7 @@ def controls_keyframe(controls: Controls, *, replace: bool) -> Keyframe:
             )
     return Keyframe(
         layer=controls.layer,
-        action_units=_action_units(controls),
+        action_units=playable(controls, rig).units,
         muscles=dict(controls.muscles or {}),
         jaw=_given(controls.jaw),
         gaze=_given(controls.gaze),
@@ -105,7 +104,7 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
     for index, body in enumerate(clip.timeline):
         try:
             keyframe = _clip_keyframe(body, rig)
-            found = rig.check(keyframe) + clashes(body, keyframe, rig)
+            found = rig.check(keyframe) + [str(clash) for clash in clashes(body, keyframe, rig)]
             warnings += [f"keyframe {index}: {warning}" for warning in found]
         except EngineError as error:
             refused = refused_by_engine(error)
@@ -198,21 +197,6 @@ def held_from_json(data: Sequence[Mapping[str, Any]], rig: Rig) -> list[Keyframe
     return keyframes
 
 
-def _action_units(controls: Controls) -> dict[str, float]:
-    """Return intensities from numbers, letters and the FACS string; what is named wins."""
-    letters = BANDED if controls.scale == "banded" else LETTERS
-    units = {}
-    if controls.facs is not None:
-        try:
-            terms = parse_facs(controls.facs)
-        except EngineError as error:
-            raise refused_by_engine(error) from error
-        units = {term.key: letters[format_facs([term])[-1]] for term in terms}
-    for name, value in (controls.action_units or {}).items():
-        units[name] = letters[value] if isinstance(value, str) else value
-    return units
-
-
 def _given(part: Any) -> dict[str, float]:
     return {} if part is None else dict(part.model_dump(exclude_none=True))
 
@@ -248,7 +232,7 @@ def _emotion_keyframe(command: EmotionCommand) -> Keyframe:
 
 
 def _clip_keyframe(body: KeyframeBody, rig: Rig) -> Keyframe:
-    keyframe = controls_keyframe(body, replace=body.replace)
+    keyframe = controls_keyframe(body, rig, replace=body.replace)
     if body.emotion is not None:
         keyframe = _with_emotion(keyframe, body, rig)
     return replace(keyframe, time=body.time)

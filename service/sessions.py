@@ -14,6 +14,8 @@ import structlog
 
 from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline
 
+from .bodies import Units
+from .clashes import clashes
 from .commands import held_from_json, held_to_json, hold
 from .errors import Busy, NotFound, refused_by_engine
 from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_frame
@@ -123,6 +125,12 @@ class Session:
             "grid": GRID_METRES,
             "tick": self.frame.tick,
         }
+
+    def clashes_of(self, command: Units, keyframe: Keyframe) -> list[str]:
+        """Return what to say of a command that was applied, beside what its layer holds."""
+        layer = self.held.get(keyframe.layer)
+        held = None if layer is None else layer.action_units
+        return [str(clash) for clash in clashes(command, keyframe, self.rig, held)]
 
     def hello(self, view: View) -> dict[str, object]:
         """Return the first event of a socket."""

@@ -13,7 +13,6 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocketDisconnect
 
 from .bodies import MESSAGE, AckMessage, ControlsMessage
-from .clashes import clashes
 from .commands import controls_keyframe, play_emotion
 from .components import Components
 from .errors import Refused, error_body, json_response
@@ -115,12 +114,12 @@ async def _obey(
             viewer.offer(_error("too_many_requests", "too many messages; slow down"))
             return
         if isinstance(message, ControlsMessage):
-            keyframe = controls_keyframe(message, replace=message.replace)
+            keyframe = controls_keyframe(message, session.rig, replace=message.replace)
         else:
             keyframe = play_emotion(message, session.rig).keyframe
         _, warnings = await parts.sessions.apply(session, keyframe)
         if isinstance(message, ControlsMessage):
-            warnings += clashes(message, keyframe, session.rig)
+            warnings += session.clashes_of(message, keyframe)
         for warning in warnings:
             viewer.offer({"type": "warning", "message": warning})
     except (ValidationError, UnicodeEncodeError) as error:

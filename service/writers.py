@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from .facs import with_facs
+
 _NAMED = ("action_units", "muscles")
 _POSED = ("jaw", "gaze", "head", "tongue")
 
 
 def with_writers(report: Mapping[str, object]) -> dict[str, object]:
-    """Return a face's report with `writers` beside what its layers make together."""
+    """Return a face's report with `facs` and `writers` beside what its layers make together."""
     layers, merged = report["layers"], report["merged"]
     assert isinstance(layers, Mapping)
     assert isinstance(merged, Mapping)
-    return {**report, "merged": {**merged, "writers": writers(layers)}}
+    return with_facs({**report, "merged": {**merged, "writers": writers(layers)}})
 
 
 def writers(layers: Mapping[str, Mapping[str, object]]) -> dict[str, list[str]]:

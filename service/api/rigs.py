@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from engine import EngineError, Keyframe, Rig, face_to_glb, format_facs, parse_facs, settled
+from engine import EngineError, Keyframe, Rig, face_to_glb, parse_facs, print_facs, settled
 
-from ..bodies import NewRig
+from ..bodies import NewRig, Scale
 from ..components import Parts
 from ..errors import Unprocessable, refused_by_engine
 from ..rigs import FULL, export_tag, tag_of
@@ -81,19 +81,19 @@ async def expression_glb(
     facs: str,
     parts: Parts,
     request: Request,
+    scale: Annotated[Scale, Query(description="How its letters are read.")] = "linear",
     level: LevelOfDetail = FULL,
     textured: Textured = True,
 ) -> Response:
     """Return an expression such as `1C+2C+L12D`, settled and baked."""
     found = await parts.rigs.get(rig)
     try:
-        terms = parse_facs(facs)
+        terms = parse_facs(facs, scale)
         keyframe = Keyframe(action_units={term.key: term.intensity for term in terms}, fade=0.15)
         found.check(keyframe)
     except EngineError as error:
         raise refused_by_engine(error) from error
-    expression = format_facs(sorted(terms, key=lambda term: term.key))
-    tag = f"{export_tag(found, level, textured=textured)}-{expression}"
+    tag = f"{export_tag(found, level, textured=textured)}-{print_facs(terms)}"
     if client_has(request, tag):
         return tagged_glb(request, b"", tag)
     data = await parts.rigs.export(

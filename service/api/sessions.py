@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Query, Response
 
 from engine import UnknownName, face_to_glb
 
-from ..bodies import Changes, Controls, EmotionCommand, NewSession
-from ..clashes import clashes
+from ..bodies import Changes, Controls, EmotionCommand, NewSession, Scale
 from ..commands import controls_keyframe, live_model, play_emotion
 from ..components import Components, Parts
 from ..errors import refused_by_engine
+from ..facs import with_facs
 from ..sessions import Session
 from .answers import AT_CAPACITY, GLB_CONTENT, GlbResponse, Textured
 
@@ -46,11 +46,17 @@ async def session_glb(session_id: str, parts: Parts, textured: Textured = True) 
 
 
 @router.get("/{session_id}")
-async def one_session(session_id: str, parts: Parts) -> dict[str, Any]:
-    """Return a session: what its layers hold and what they make together."""
+async def one_session(
+    session_id: str,
+    parts: Parts,
+    scale: Annotated[Scale, Query(description="How letters of `merged.facs` are written.")] = (
+        "linear"
+    ),
+) -> dict[str, Any]:
+    """Return a session: what its layers hold and what they make together, as FACS too."""
     session = await parts.sessions.get(session_id)
     view = await parts.sessions.view(session)
-    return {**session.describe(), "tick": view.frame.tick, **view.report}
+    return {**session.describe(), "tick": view.frame.tick, **with_facs(view.report, scale)}
 
 
 @router.delete("/{session_id}", status_code=204)
@@ -108,9 +114,10 @@ async def _control(
     session_id: str, body: Controls, parts: Components, *, replace: bool
 ) -> dict[str, Any]:
     session = await parts.sessions.get(session_id)
-    keyframe = controls_keyframe(body, replace=replace)
+    keyframe = controls_keyframe(body, session.rig, replace=replace)
     tick, warnings = await parts.sessions.apply(session, keyframe)
-    return {"tick": tick, "warnings": warnings + clashes(body, keyframe, session.rig)}
+    warnings += session.clashes_of(body, keyframe)
+    return {"tick": tick, "scale": body.scale, "warnings": warnings}
 
 
 async def _edit(session: Session, changes: dict[str, Any], parts: Components) -> dict[str, Any]:

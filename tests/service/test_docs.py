@@ -14,6 +14,7 @@ from starlette.testclient import TestClient
 from typer.testing import CliRunner
 
 from engine import builtin_rig, recipe_attributes
+from engine.facs import exclusions, needs
 from service.app import create_app
 from service.cli import app as command_line
 from service.protocol import __doc__ as layout
@@ -157,3 +158,20 @@ def test_the_example_of_an_analysis_has_the_fields_of_one(client: TestClient, se
     assert set(example["muscles"][0]) == set(real["muscles"][0])
     assert set(example["energy"]) == set(real["energy"])
     assert set(example["energy"]["terms"]) <= set(real["energy"]["terms"])
+
+
+def test_the_example_of_facs_is_answered_as_it_is_shown(client: TestClient, api: str) -> None:
+    (example,) = sent_in("api.md", "/api/facs")
+    answer = client.post("/api/facs", json=json.loads(example)).json()
+    shown = re.search(r'```json\n(\{"canonical".*?)```', api, re.S)
+    assert shown is not None
+    assert {**answer, "rig": "…"} == json.loads(shown[1])
+
+
+def test_every_rule_of_facs_is_documented_with_its_codes(api: str) -> None:
+    for rule in exclusions():
+        pairs = ", ".join(" and ".join(n.removeprefix("AU") for n in pair) for pair in rule.pairs)
+        assert f"| `{rule.rule}` | {pairs} |" in api
+    for need in needs():
+        others = " or ".join(name.removeprefix("AU") for name in need.any_of)
+        assert f"| `{need.rule}` | {need.unit.removeprefix('AU')} without {others} |" in api
