@@ -8,7 +8,7 @@ from .analysis import Analysis, UnitBasis, analyze, analyze_facs, unit_basis
 from .clip import Clip, clip_of, record
 from .combination import Combination
 from .conditions import TISSUE_AGES, plain_changes
-from .emotion import Emotion, blend
+from .emotion import Emotion
 from .errors import (
     Cancelled,
     Diverged,
@@ -22,6 +22,7 @@ from .errors import (
 from .face import FaceState
 from .facs import (
     LETTERS,
+    NEUTRAL,
     REGIONS,
     SCALES,
     ActionUnit,
@@ -64,6 +65,14 @@ from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
 from .timeline import LAYERS, LONGEST_ONSET, TICKS_PER_SECOND, Keyframe, Timeline
+from .vocabulary import (
+    Lexicon,
+    Resolved,
+    lexicon,
+    resolve_coordinates,
+    resolve_label,
+    resolve_scores,
+)
 from .warming import kernels_are_kept, warm_kernels
 
 __all__ = [
@@ -79,6 +88,7 @@ __all__ = [
     "MAX_ACTIVATION",
     "MODEL_CHOICES",
     "MOST_ALIKE",
+    "NEUTRAL",
     "REGIONS",
     "SCALES",
     "TICKS_PER_SECOND",
@@ -103,10 +113,12 @@ __all__ = [
     "Inverse",
     "JawHinge",
     "Keyframe",
+    "Lexicon",
     "Model",
     "Person",
     "Pose",
     "Recipe",
+    "Resolved",
     "Response",
     "Rig",
     "Separability",
@@ -118,7 +130,6 @@ __all__ = [
     "UnknownName",
     "analyze",
     "analyze_facs",
-    "blend",
     "broken_rules",
     "builtin_rig",
     "clip_of",
@@ -136,6 +147,7 @@ __all__ = [
     "kernels_are_kept",
     "landmarks_68",
     "letter_of",
+    "lexicon",
     "measure_units",
     "parse_facs",
     "path_dependence",
@@ -147,6 +159,9 @@ __all__ = [
     "read_kept",
     "recipe_attributes",
     "record",
+    "resolve_coordinates",
+    "resolve_label",
+    "resolve_scores",
     "response_of",
     "rig_from_recipe",
     "rig_to_glb",

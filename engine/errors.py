@@ -12,7 +12,7 @@ EngineError
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 
@@ -30,11 +30,17 @@ class UnknownName(EngineError):
         nearest: Known names that look like the given one, best first.
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+    def __init__(
+        self, kind: str, name: str, known: Iterable[str], *, nearest: Sequence[str] | None = None
+    ) -> None:
         self.kind = kind
         self.name = name
         self.known = sorted(known)
-        self.nearest = get_close_matches(name, self.known, n=3)
+        if nearest is None:
+            self.nearest = get_close_matches(name, self.known, n=3)
+        else:  # Found among more names than are worth telling: they come first.
+            self.nearest = list(nearest)
+            self.known = list(dict.fromkeys([*nearest, *self.known]))
         hint = f"; did you mean {', '.join(self.nearest)}?" if self.nearest else ""
         super().__init__(f"there is no {kind} named {name!r}{hint}")
 

@@ -28,6 +28,7 @@ from .explaining import UNKNOWN_FIELD
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e9, le=1e9)]
 Share = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=1)]
 Seconds = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=3600)]
+Coordinate = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1, le=1)]
 Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-180, le=180)]
 Millimetres = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-100, le=100)]
 Activation = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1, le=MAX_ACTIVATION)]
@@ -172,11 +173,28 @@ class Score(Body):
 
 
 class EmotionCommand(Body):
-    """An emotion to play: one label, or scores of several."""
+    """An emotion to play: one label, scores of several, or coordinates."""
 
-    label: Name | None = None
+    label: Name | None = Field(
+        default=None, description="A label of any vocabulary, another form of it, or an emoji."
+    )
+    vocabulary: Name | None = Field(
+        default=None,
+        description="Whose labels are meant, such as goemotions; GET /api/emotions lists them.",
+    )
     intensity: Share = 1.0
-    scores: Annotated[list[Score], Field(min_length=1, max_length=64)] | None = None
+    scores: Annotated[list[Score], Field(min_length=1, max_length=64)] | None = Field(
+        default=None,
+        description="A classifier's list; what is missing to 1, and neutral, is rest.",
+    )
+    valence: Coordinate | None = Field(default=None, description="Pleasure; takes arousal too.")
+    arousal: Coordinate | None = None
+    dominance: Coordinate | None = Field(default=None, description="Or potency; 0 if left out.")
+    seed: Annotated[int, Field(strict=True, ge=0, le=_MOST)] | None = Field(
+        default=None,
+        description="Chooses among a recipe's variants, 0 the first; without it, a label that is "
+        "played again takes the next one, and scores and coordinates the first.",
+    )
     fade_in: Seconds | None = Field(
         default=None,
         description="Seconds until it is reached; without it each unit takes its own.",

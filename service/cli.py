@@ -184,7 +184,7 @@ def sheet(
         typer.Option(help="Names to show, comma separated: AU12,fear,fear@0.4,rest,6C+12D."),
     ] = "",
     only_set: Annotated[
-        str, typer.Option("--set", help="Show a set: emotions, intensities, combinations.")
+        str, typer.Option("--set", help="Show a set: emotions, intensities, combinations, recipes.")
     ] = "",
     whole: Annotated[
         bool, typer.Option("--whole", help="Show the head, not the face alone.")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 from engine import (
@@ -11,10 +12,7 @@ from engine import (
     Keyframe,
     Model,
     Rig,
-    Term,
     Timeline,
-    blend,
-    format_facs,
     hold_units,
     unit_key,
 )
@@ -27,25 +25,9 @@ from .bodies import (
     NewClip,
 )
 from .clashes import clashes
+from .emotions import Turns, play_emotion
 from .errors import Unprocessable, refused_by_engine
 from .facs import playable
-
-
-@dataclass(frozen=True)
-class Played:
-    """An emotion as it is played.
-
-    Attributes:
-        keyframe: The command.
-        recipe: What it plays, as a FACS string with the nearest letters.
-        action_units: The same, in exact intensities.
-        source: Where the recipe comes from.
-    """
-
-    keyframe: Keyframe
-    recipe: str
-    action_units: Mapping[str, float]
-    source: str
 
 
 def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyframe:
@@ -77,22 +59,6 @@ def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyfram
     )
 
 
-def play_emotion(command: EmotionCommand, rig: Rig) -> Played:
-    """Return the keyframe and the recipe of a label, or of a scored list of labels.
-
-    Raises:
-        Unprocessable: If both or neither is given, or a label is not known.
-    """
-    if (command.label is None) == (command.scores is None):
-        raise Unprocessable("invalid_body", "give either 'label' or 'scores'")
-    try:
-        if command.label is not None:
-            return _play_label(command, command.label, rig)
-        return _play_scores(command, rig)
-    except EngineError as error:
-        raise refused_by_engine(error) from error
-
-
 def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
     """Return the timeline of a clip, checked against its rig, and what the check warns of.
 
@@ -101,9 +67,10 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
     """
     keyframes = []
     warnings = []
+    turns: Turns = Counter()
     for index, body in enumerate(clip.timeline):
         try:
-            keyframe = _clip_keyframe(body, rig)
+            keyframe = _clip_keyframe(body, rig, turns)
             found = rig.check(keyframe) + [str(clash) for clash in clashes(body, keyframe, rig)]
             warnings += [f"keyframe {index}: {warning}" for warning in found]
         except EngineError as error:
@@ -201,50 +168,20 @@ def _given(part: Any) -> dict[str, float]:
     return {} if part is None else dict(part.model_dump(exclude_none=True))
 
 
-def _play_label(command: EmotionCommand, label: str, rig: Rig) -> Played:
-    emotion = rig.resolve_emotion(label)
-    keyframe = replace(_emotion_keyframe(command), emotion=(emotion.name, command.intensity))
-    units = {term.key: term.intensity * command.intensity for term in emotion.terms}
-    return Played(keyframe, emotion.recipe, units, emotion.source)
-
-
-def _play_scores(command: EmotionCommand, rig: Rig) -> Played:
-    scores = [(score.label, score.score) for score in command.scores or ()]
-    units = blend(rig.emotions, scores, command.intensity)
-    keyframe = replace(_emotion_keyframe(command), action_units=units, replace=True)
-    sources = {rig.resolve_emotion(label).source: None for label, _ in scores}
-    terms = [_term(key, intensity, rig) for key, intensity in units.items()]
-    return Played(keyframe, format_facs(terms), units, "; ".join(sources))
-
-
-def _term(key: str, intensity: float, rig: Rig) -> Term:
-    unit, side = rig.resolve_unit(key)
-    return Term(unit.name, side, intensity)
-
-
-def _emotion_keyframe(command: EmotionCommand) -> Keyframe:
-    return Keyframe(
-        layer=command.layer,
-        fade=command.fade_in,
-        hold=command.hold,
-        fade_out=command.fade_out,
-    )
-
-
-def _clip_keyframe(body: KeyframeBody, rig: Rig) -> Keyframe:
+def _clip_keyframe(body: KeyframeBody, rig: Rig, turns: Turns) -> Keyframe:
     keyframe = controls_keyframe(body, rig, replace=body.replace)
     if body.emotion is not None:
-        keyframe = _with_emotion(keyframe, body, rig)
+        keyframe = _with_emotion(keyframe, body, rig, turns)
     return replace(keyframe, time=body.time)
 
 
-def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig) -> Keyframe:
+def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig, turns: Turns) -> Keyframe:
     """Return `keyframe` with the emotion of `body`; fields that `body` gives itself win."""
     command = body.emotion
     if isinstance(command, str):
         fade = body.fade if "fade" in body.model_fields_set else None
         command = EmotionCommand(label=command, fade_in=fade, hold=body.ttl)
-    played = play_emotion(command or EmotionCommand(), rig).keyframe
+    played = play_emotion(command or EmotionCommand(), rig, turns).keyframe
     given = body.model_fields_set
     return replace(
         keyframe,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -54,6 +54,7 @@ class Session:
         commands: The timeline so far, oldest first.
         viewers: The sockets that watch it.
         editing: Held while a live edit derives a rig, so that edits follow each other.
+        turns: How often each recipe of an emotion was played on it.
     """
 
     id: str
@@ -66,6 +67,7 @@ class Session:
     commands: deque[Command] = field(default_factory=lambda: deque(maxlen=_COMMANDS_KEPT))
     viewers: set[Viewer] = field(default_factory=set)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    turns: Counter[str] = field(default_factory=Counter)
     unsaved: bool = False
     state_changed: bool = False
     _encoded: bytes | None = None

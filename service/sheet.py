@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image, ImageDraw, ImageFont
 
+from engine import UnknownName, resolve_label
+
 from .app import create_app
 from .browser import NoBrowser, chromium
 from .server import running
@@ -164,7 +166,8 @@ def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
 
     Args:
         rig: What the API says of the rig.
-        only: Names of units or emotions, FACS strings, or emotions weakened: "happiness@0.4".
+        only: Names of units, FACS strings, labels of emotions, these also weakened:
+            "happiness@0.4".
     """
     poses = {"rest": Pose("rest", {})}
     for unit in rig["action_units"]:
@@ -181,7 +184,7 @@ def poses_of(rig: dict[str, Any], only: Sequence[str]) -> list[Pose]:
 
 def _pose_of(name: str, poses: dict[str, Pose], words: dict[str, str]) -> Pose:
     asked, at, weakened = name.partition("@")
-    pose = poses.get(words.get(asked, asked))
+    pose = poses.get(words.get(asked, asked)) or _labelled(asked)
     if not at:
         return pose or Pose(name, {"facs": name})
     try:
@@ -193,6 +196,15 @@ def _pose_of(name: str, poses: dict[str, Pose], words: dict[str, str]) -> Pose:
             f"{name!r} is no emotion with an intensity above 0 and up to 1, such as happiness@0.4."
         )
     return replace(pose, label=f"{pose.emotion} {weakened}", intensity=intensity)
+
+
+def _labelled(name: str) -> Pose | None:
+    """Return the pose of a label of any vocabulary, None if there is none."""
+    try:
+        plays = resolve_label(name)
+    except UnknownName:
+        return None
+    return Pose(f"{name} {plays.facs}", {}, name)
 
 
 def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[str, bytes]]:
@@ -257,7 +269,12 @@ def _command(page: Page, session: str, pose: Pose) -> int:
     emptied = _call(page, "PUT", f"{session}/controls", {**held, "layer": "emotion"})
     answer = _call(page, "PUT", f"{session}/controls", {**held, **pose.controls})
     if pose.emotion is not None:
-        body = {"label": pose.emotion, "fade_in": 0.15, "intensity": pose.intensity}
+        body = {
+            "label": pose.emotion,
+            "fade_in": 0.15,
+            "intensity": pose.intensity,
+            "seed": 0,
+        }
         answer = _call(page, "POST", f"{session}/emotions", body)
     return int(max(emptied["tick"], answer["tick"]))
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from engine import lexicon
+
 EMOTIONS = ("happiness", "sadness", "fear", "anger", "surprise", "disgust", "contempt")
 STRENGTHS = (0.4, 0.7, 1.0)
 COMBINATIONS = (
@@ -34,5 +36,6 @@ SETS: Mapping[str, tuple[str, ...]] = {
     "emotions": ("rest", *EMOTIONS),
     "intensities": tuple(f"{name}@{share}" for share in STRENGTHS for name in EMOTIONS),
     "combinations": COMBINATIONS,
+    "recipes": tuple(lexicon().recipes),
 }
 """Names of poses, as `--only` takes them."""

@@ -13,8 +13,9 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocketDisconnect
 
 from .bodies import MESSAGE, AckMessage, ControlsMessage
-from .commands import controls_keyframe, play_emotion
+from .commands import controls_keyframe
 from .components import Components
+from .emotions import play_emotion
 from .errors import Refused, error_body, json_response
 from .explaining import explain
 from .guard import KEY_SUBPROTOCOL
@@ -116,7 +117,7 @@ async def _obey(
         if isinstance(message, ControlsMessage):
             keyframe = controls_keyframe(message, session.rig, replace=message.replace)
         else:
-            keyframe = play_emotion(message, session.rig).keyframe
+            keyframe = play_emotion(message, session.rig, session.turns).keyframe
         _, warnings = await parts.sessions.apply(session, keyframe)
         if isinstance(message, ControlsMessage):
             warnings += session.clashes_of(message, keyframe)

@@ -9,8 +9,9 @@ from fastapi import APIRouter, Query, Response
 from engine import UnknownName, face_to_glb
 
 from ..bodies import Changes, Controls, EmotionCommand, NewSession, Scale
-from ..commands import controls_keyframe, live_model, play_emotion
+from ..commands import controls_keyframe, live_model
 from ..components import Components, Parts
+from ..emotions import play_emotion
 from ..errors import refused_by_engine
 from ..facs import with_facs
 from ..sessions import Session
@@ -79,17 +80,11 @@ async def patch_controls(session_id: str, body: Controls, parts: Parts) -> dict[
 
 @router.post("/{session_id}/emotions")
 async def play(session_id: str, body: EmotionCommand, parts: Parts) -> dict[str, Any]:
-    """Play an emotion, or a blend of scored ones."""
+    """Play an emotion: a label, a scored list, or coordinates of feeling."""
     session = await parts.sessions.get(session_id)
-    played = play_emotion(body, session.rig)
+    played = play_emotion(body, session.rig, session.turns)
     tick, warnings = await parts.sessions.apply(session, played.keyframe)
-    return {
-        "tick": tick,
-        "recipe": played.recipe,
-        "action_units": dict(played.action_units),
-        "source": played.source,
-        "warnings": warnings,
-    }
+    return {"tick": tick, **played.describe(), "warnings": warnings}
 
 
 @router.patch("/{session_id}/tissue")

@@ -219,8 +219,9 @@ export function replaceCommand(controls: Controls): string {
   return JSON.stringify({ type: 'controls', replace: true, ...controls });
 }
 
+/** Play an emotion in its first variant: the same one while its intensity is dragged. */
 export function emotionCommand(label: string, intensity: number, fadeIn: number | null): string {
-  return JSON.stringify({ type: 'emotion', label, intensity, fade_in: fadeIn });
+  return JSON.stringify({ type: 'emotion', label, intensity, fade_in: fadeIn, seed: 0 });
 }
 
 export function ackCommand(tick: number): string {

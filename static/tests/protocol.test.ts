@@ -112,6 +112,7 @@ describe('text messages', () => {
       label: 'happiness',
       intensity: 0.8,
       fade_in: 0.25,
+      seed: 0,
     });
   });
 

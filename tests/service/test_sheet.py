@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from engine import builtin_rig, parse_facs
+from engine import builtin_rig, lexicon, parse_facs
 from service.sheet import Plan, SheetRefused, _fitting, _frame_of, _slug, draw_sheet, poses_of, tile
 from service.sheet_sets import SETS
 
@@ -42,13 +42,20 @@ def test_a_set_is_of_what_the_rig_can_show(name: str) -> None:
     rig = builtin_rig("standard")
     assert len(set(SETS[name])) == len(SETS[name])
     for pose in SETS[name]:
-        if pose.partition("@")[0] not in ("rest", *rig.emotions):
+        if pose.partition("@")[0] not in ("rest", *rig.emotions, *lexicon().recipes):
             assert all(rig.resolve_unit(term.key) for term in parse_facs(pose))
 
 
 def test_a_sheet_shows_weak_emotions() -> None:
     (pose,) = poses_of(RIG, ("joy@0.4",))
     assert (pose.label, pose.emotion, pose.intensity) == ("happiness 0.4", "happiness", 0.4)
+
+
+def test_a_sheet_shows_labels_of_any_vocabulary() -> None:
+    pose, weak = poses_of(RIG, ("bored", "annoyance@0.5"))
+    assert pose.emotion == "bored"
+    assert pose.label.startswith("bored 15A")
+    assert weak.intensity == 0.5
 
 
 @pytest.mark.parametrize("name", ["joy@", "joy@2", "joy@nan", "AU1@0.5", "6C+12D@0.5"])
