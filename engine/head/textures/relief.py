@@ -122,21 +122,21 @@ def _fine_relief(
     return found
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def _groove(noise: float, spacing: float, width: float) -> float:
     """Return the profile of a line where noise crosses zero: 1 at its bottom, raised beside it."""
     gap = noise * spacing / width
     return float(np.exp(-gap * gap) - 0.32 * np.exp(-((abs(gap) - 2.0) ** 2)))
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def _crease(gap: float, width: float) -> float:
     """Return the profile of a crease between two rolls of skin: sharp below, rounded above."""
     apart = abs(gap) / width
     return float(0.62 * np.exp(-apart * apart) + 0.42 * np.exp(-apart / 3.2))
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def _rolls(gap: float, spacing: float, width: float) -> float:
     """Return the profile of a furrow between soft rolls, each as broad as furrows lie apart.
 
@@ -154,7 +154,7 @@ def _rolls(gap: float, spacing: float, width: float) -> float:
     return float(0.8 * (1 - fall / whole) + 0.2 * np.exp(-((gap / width) ** 2)))
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def cheek_step(gap: float) -> tuple[float, float]:
     """Return the fold beside the mouth: the cheek's roll over the lip's side, and the valley.
 
@@ -191,16 +191,25 @@ def dimples(x: float, y: float, z: float, seed: int) -> float:
     return float(depth)
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def _ramp(low: float, high: float, value: float) -> float:
     share = min(max((value - low) / (high - low), 0.0), 1.0)
     return share * share * (3 - 2 * share)
 
 
-@kept(nogil=True, inline="always")
+@kept(nogil=True)
 def _spot(x: float, y: float, cx: float, cy: float, width: float, height: float) -> float:
     u, v = (x - cx) / width, (y - cy) / height
     return float(np.exp(-((u * u + v * v) ** 2)))
+
+
+@kept(nogil=True)
+def _own(line: int, kind: float, seed: int) -> float:
+    """Return a number in 0..1 of one line of a kind.
+
+    Kinds are counted in fractions: for each whole number in a call, Numba compiles anew.
+    """
+    return hashed(line, int(kind), 0, seed)
 
 
 @kept(nogil=True)
@@ -250,12 +259,12 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
             rise = y - 2.6 * np.sin((x - 8.0) / 17.0) + 0.5 * w6
             rise -= 1.6 * value_noise(side / 24, 3.1, 0.5, seed + 63)
             for k in range(5):
-                line = 26.0 + 8.8 * k + 2.0 * hashed(k, 1, 0, seed)
+                line = 26.0 + 8.8 * k + 2.0 * _own(k, 1.0, seed)
                 gap = rise - line - 0.9 * value_noise(side / 17, 3.1 * k, 0.5, seed + 63)
                 if abs(gap) > 9:
                     continue
                 whole = 0.62 + 0.95 * value_noise(side / 24, 5.3 * k, 1.5, seed + 64)
-                whole = min(max(whole, 0.0), 1.0) * (0.65 + 0.35 * hashed(k, 2, 0, seed))
+                whole = min(max(whole, 0.0), 1.0) * (0.65 + 0.35 * _own(k, 2.0, seed))
                 fork = 3.4 * value_noise(side / 17, 7.7 * k, 2.5, seed + 75)
                 depth += mask * 0.95 * whole * _rolls(gap, 9.4, 0.55)
                 if fork > 0.2:
@@ -264,9 +273,9 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         mask = _spot(x, y, 0.0, 17.0, 15.0, 17.0)
         if mask > 0.01:
             for k in range(3):
-                own = hashed(k + left, 3, 0, seed)
+                own = _own(k + left, 3.0, seed)
                 middle = (6.3, 10.2, 2.2)[k] + 1.6 * own
-                share = (0.80, 0.30, 0.22)[k] * (0.6 + 0.4 * hashed(k + left, 4, 0, seed))
+                share = (0.80, 0.30, 0.22)[k] * (0.6 + 0.4 * _own(k + left, 4.0, seed))
                 top, low = 24.0 + 8 * own - 4 * k, 8.0 - 4 * own + 2 * k
                 ends = _ramp(low - 3, low + 4, y) * _ramp(top + 4, top - 5, y)
                 gap = x - middle - 0.13 * (y - 14.0) + 0.006 * (y - 16.0) ** 2 + 0.45 * w6
@@ -275,13 +284,13 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         mask = _spot(x, y, 0.0, 3.5, 11.5, 9.5)
         if mask > 0.01:
             for k in range(3):
-                own = hashed(k, 5, 0, seed)
+                own = _own(k, 5.0, seed)
                 gap = y - (3.6, -1.2, 8.4)[k] - 1.5 * own + 0.018 * x * x + 0.4 * w6
                 depth += mask * (0.5, 0.3, 0.22)[k] * _crease(gap, 0.62)
         mask = _spot(x, y, 10.0, -11.0, 6.5, 12.0)
         if mask > 0.01:
             for k in range(4):
-                own = hashed(k + left, 6, 0, seed)
+                own = _own(k + left, 6.0, seed)
                 gap = 0.75 * (y - 0.85 * (x - 9.0) + 3.0 + 3.4 * k + 1.5 * own) + 0.35 * w6
                 depth += mask * (0.16 + 0.16 * own) * _crease(gap, 0.48)
         # Crow's feet: rays from the corner of the eye, each of its own length, some forked.
@@ -290,8 +299,8 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         if x > 44 and reach < 34:
             angle = np.arctan2(ray_y, ray_x + 0.25 * abs(z - 73.0))
             for k in range(6):
-                own = hashed(k + left, 7, 0, seed)
-                other = hashed(k + left, 8, 0, seed)
+                own = _own(k + left, 7.0, seed)
+                other = _own(k + left, 8.0, seed)
                 bend = 1 + 0.014 * (reach - 9.0)
                 aim = (0.66 - 0.27 * k + 0.16 * (own - 0.5)) * bend
                 gap = (angle - aim) * reach + 0.5 * w6 + 0.2 * w2
@@ -325,9 +334,9 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
             gap += 0.6 * w6 + 0.12 * w2
             whole = _ramp(0.0, 0.2, share) * _ramp(1.0, 0.5, share) * (1 - 0.4 * share)
             roll, valley = cheek_step(gap)
-            uneven = 0.75 + 0.45 * value_noise(5 * share, left, 0.5, seed + 78)
+            uneven = 0.75 + 0.45 * value_noise(5 * share, float(left), 0.5, seed + 78)
             depth += whole * (0.65 * uneven * valley - 1.9 * roll)
-            beside = gap - 5.5 - 1.6 * hashed(left, 9, 0, seed) - 3.0 * (share - 0.8)
+            beside = gap - 5.5 - 1.6 * _own(left, 9.0, seed) - 3.0 * (share - 0.8)
             depth += 0.14 * _ramp(0.4, 0.7, share) * _ramp(1.0, 0.8, share) * _crease(beside, 0.6)
         gap, share = _along(x, y, _MARIONETTE)
         depth += 0.4 * np.exp(-(((gap + 0.3 * w6) / 1.0) ** 2)) * np.sin(np.pi * share) ** 0.7
@@ -347,7 +356,7 @@ def _folds(places: Float32Array, table: Float32Array, seed: int) -> npt.NDArray[
         # Rings round the neck.
         if y < -116:
             for k in range(4):
-                line = -122.0 - 13.5 * k - 5.0 * hashed(k, 10, 0, seed)
+                line = -122.0 - 13.5 * k - 5.0 * _own(k, 10.0, seed)
                 sway = 2.5 * value_noise(side / 26, 4.4 * k, 0.5, seed + 74)
                 gap = y - line - 0.10 * (z - 40.0) - sway
                 whole = 0.55 + 0.8 * value_noise(side / 30, 6.1 * k, 1.5, seed + 77)

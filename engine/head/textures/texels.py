@@ -44,7 +44,9 @@ class Texels:
             vertices: Positions [mm], shape (d, 3).
             size: Texels a side.
         """
-        owner, shares = _rasterised(uvs * size, triangles, size)
+        owner = np.full((size, size), -1, dtype=np.int32)
+        shares = np.zeros((size, size, 3), dtype=np.float32)
+        _rasterise(uvs * size, triangles, owner, shares)
         rows, columns = np.nonzero(owner >= 0)
         triangle = owner[rows, columns]
         return cls(
@@ -58,8 +60,10 @@ class Texels:
 
     def carried(self, values: FloatArray) -> Float32Array:
         """Return what vertices hold, shape (d,) or (d, k), at the texels: (n,) or (n, k)."""
-        table = values.reshape(len(values), -1).astype(np.float32)
-        found = _carried(table, self.corners, self.shares)
+        # In one layout, for which the kernel is compiled once.
+        table = np.ascontiguousarray(values.reshape(len(values), -1), dtype=np.float32)
+        found = np.empty((len(self.corners), table.shape[1]), dtype=np.float32)
+        _carry(table, self.corners, self.shares, found)
         return found[:, 0] if values.ndim == 1 else found
 
     def image(self, values: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
@@ -79,14 +83,13 @@ class Texels:
 
 
 @kept(nogil=True)
-def _rasterised(
-    places: FloatArray, triangles: IntArray, size: int
-) -> tuple[npt.NDArray[np.int32], Float32Array]:
-    """Return the triangle at each texel's middle, -1 for none, and the weights of its corners."""
-    owner = np.full((size, size), -1, dtype=np.int32)
-    shares = np.zeros((size, size, 3), dtype=np.float32)
+def _rasterise(
+    places: FloatArray, triangles: IntArray, owner: npt.NDArray[np.int32], shares: Float32Array
+) -> None:
+    """Write the triangle at each texel's middle and the weights of its corners."""
+    size = len(owner)
     for t in range(len(triangles)):
-        a, b, c = triangles[t]
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         x0, y0 = places[a, 0] - 0.5, places[a, 1] - 0.5
         x1, y1 = places[b, 0] - 0.5, places[b, 1] - 0.5
         x2, y2 = places[c, 0] - 0.5, places[c, 1] - 0.5
@@ -103,19 +106,18 @@ def _rasterised(
                 if s0 >= -1e-6 and s1 >= -1e-6 and s2 >= -1e-6:
                     owner[y, x] = t
                     shares[y, x, 0], shares[y, x, 1], shares[y, x, 2] = s0, s1, s2
-    return owner, shares
 
 
 @kept(nogil=True)
-def _carried(table: Float32Array, corners: IntArray, shares: Float32Array) -> Float32Array:
-    found = np.empty((len(corners), table.shape[1]), dtype=np.float32)
+def _carry(
+    table: Float32Array, corners: IntArray, shares: Float32Array, found: Float32Array
+) -> None:
     for n in range(len(corners)):
-        a, b, c = corners[n]
+        a, b, c = corners[n, 0], corners[n, 1], corners[n, 2]
         for k in range(table.shape[1]):
             found[n, k] = (
                 table[a, k] * shares[n, 0] + table[b, k] * shares[n, 1] + table[c, k] * shares[n, 2]
             )
-    return found
 
 
 def _texel_widths(places: FloatArray, triangles: IntArray, vertices: FloatArray) -> Float32Array:
