@@ -22,7 +22,9 @@ from .errors import (
 from .face import FaceState
 from .facs import (
     LETTERS,
+    LIPS,
     NEUTRAL,
+    PARTED,
     REGIONS,
     SCALES,
     ActionUnit,
@@ -33,9 +35,11 @@ from .facs import (
     format_facs,
     letter_of,
     parse_facs,
+    part_name,
     print_facs,
     split_side,
     term_of,
+    whole_of,
 )
 from .flesh import Flesh, examine, jolts, path_dependence, random_mixes
 from .frame import Frame, Pose
@@ -84,11 +88,13 @@ __all__ = [
     "LAYERS",
     "LETTERS",
     "LEVELS",
+    "LIPS",
     "LONGEST_ONSET",
     "MAX_ACTIVATION",
     "MODEL_CHOICES",
     "MOST_ALIKE",
     "NEUTRAL",
+    "PARTED",
     "REGIONS",
     "SCALES",
     "TICKS_PER_SECOND",
@@ -150,6 +156,7 @@ __all__ = [
     "lexicon",
     "measure_units",
     "parse_facs",
+    "part_name",
     "path_dependence",
     "people",
     "plain_changes",
@@ -178,4 +185,5 @@ __all__ = [
     "unit_basis",
     "unit_key",
     "warm_kernels",
+    "whole_of",
 ]

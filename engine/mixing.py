@@ -12,6 +12,7 @@ import numpy as np
 from .arrays import FloatArray
 from .channels import GROUPS
 from .compiling import kernel
+from .facs import LIPS, ActionUnit, part_name, whole_of
 from .rig import Rig
 from .timeline import LAYERS, Keyframe, ticks
 
@@ -329,16 +330,32 @@ def hold_units(rig: Rig, held: dict[str, float], named: Mapping[str, float]) -> 
     """Take the named units into `held`, each under one name; 0 lets go of a unit.
 
     A unit without side sets both sides and lets go of what each held by itself; one side sets its
-    own and leaves the other where it was. In one command, sides come after both.
+    own and leaves the other where it was. So it is with the lips of a unit that has parts: two
+    that do the same are the unit again. In one command, sides and lips come after both.
     """
     resolved = [(*rig.resolve_unit(key), value) for key, value in named.items()]
-    for unit, side, value in sorted(resolved, key=lambda entry: entry[1] != ""):
-        left, right = (unit_key(unit.name, each) for each in "LR")
-        if side and unit.name in held:
-            held[left] = held[right] = held.pop(unit.name)
-        for stale in () if side else (left, right):
+    parts = [(unit, side, _whole(rig, unit, side), value) for unit, side, value in resolved]
+    for unit, side, whole, value in sorted(parts, key=lambda entry: entry[2] != ""):
+        left, right = (unit_key(whole or unit.name, each) for each in "LR")
+        top, bottom = (part_name(whole or unit.name, each) for each in LIPS)
+        if whole in held:
+            halves = (left, right) if side else (top, bottom)
+            held.update(dict.fromkeys(halves, held.pop(whole)))
+        for stale in () if whole else (left, right, top, bottom):
             held.pop(stale, None)
         _merge(held, {unit_key(unit.name, side): value})
+        # Only lips rejoin: a side keeps the name under which it was set.
+        alike = whole and not side and top in held and held[top] == held.get(bottom)
+        if alike and not {left, right} & set(held):
+            held[whole] = held.pop(top)
+            del held[bottom]
+
+
+def _whole(rig: Rig, unit: ActionUnit, side: str) -> str:
+    """Return the unit that one side or lip is a part of, "" for what is no part."""
+    if side:
+        return unit.name
+    return "" if unit.name in rig.action_units else whole_of(unit.name)
 
 
 def unit_key(name: str, side: str) -> str:

@@ -16,7 +16,15 @@ from .channels import GROUPS, LIMITS, MIRRORED, Channels
 from .combination import SIDES, Combination, together
 from .emotion import Emotion, find_emotion
 from .errors import EngineError, InvalidValue, UnknownName
-from .facs import ActionUnit, FacsWarning, parse_facs, print_facs, split_side
+from .facs import (
+    LIPS,
+    ActionUnit,
+    FacsWarning,
+    lip_part,
+    parse_facs,
+    print_facs,
+    split_side,
+)
 from .force_basis import whole_pull
 from .head import (
     LEVELS,
@@ -215,18 +223,23 @@ class Rig:
     def resolve_unit(self, key: str) -> tuple[ActionUnit, str]:
         """Return the unit and side ("", "L", "R") that "AU12", "L12" or "12" names.
 
+        One lip, "T28", is a unit of its own and has no side.
+
         Raises:
             UnknownName: If the rig has no such unit.
         """
+        if key in self.action_units:
+            return self.action_units[key], ""
         try:
             name, side = split_side(key)
         except EngineError:
             name, side = key, ""
-        if key in self.action_units:
-            return self.action_units[key], ""
-        if name not in self.action_units or side not in ("", *SIDES):
+        unit = self.action_units.get(name)
+        if unit is not None and side in LIPS:
+            unit, side = lip_part(unit, side), ""
+        if unit is None:
             raise UnknownName("action unit", key, self.action_units)
-        return self.action_units[name], side
+        return unit, side
 
     def contraction(self, units: Mapping[str, float]) -> FloatArray:
         """Return the channel vector of action units at intensities, held to its limits.
@@ -234,7 +247,8 @@ class Rig:
         Units add up, but for what the rig's combinations say of those that act together.
 
         Args:
-            units: Intensity 0..1 by "AU12", "L12" or "R12"; a side counts before both.
+            units: Intensity 0..1 by "AU12", "L12", "R12" or "T28"; a side counts before both, and
+                one lip adds to a whole: `hold_units` says which of them counts.
 
         Raises:
             UnknownName: For a unit the rig does not have.
@@ -436,7 +450,7 @@ class Rig:
         acting = together(self.combinations, levels)
         vector = np.zeros(self.channels.count)
         for name, intensity in sorted(acting.levels.items()):
-            unit = self.action_units[name]
+            unit, _ = self.resolve_unit(name)
             scale = unit.scale(intensity)
             for index, share, stem in self._muscles_of[side]:
                 muscle = self.muscle_names[index]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from engine import FacsWarning, Keyframe, Rig, broken_rules, unit_key
+from engine import FacsWarning, Keyframe, Rig, broken_rules, unit_key, whole_of
 
 from .bodies import Units
 from .facs import named_units, one_key, playable
@@ -43,10 +43,14 @@ def _repeated(command: Units, rig: Rig) -> Iterator[FacsWarning]:
 
 
 def _sides(keyframe: Keyframe, rig: Rig) -> Iterator[FacsWarning]:
-    """A unit named for both sides and for one: the one side counts there."""
+    """A unit named for both sides or lips and for one: the one counts there."""
     resolved = [rig.resolve_unit(key) for key in keyframe.action_units]
     both = {unit.name for unit, side in resolved if not side}
     for unit, side in resolved:
+        whole = whole_of(unit.name)
+        if whole in both and unit.name not in rig.action_units:
+            message = f"{whole} and {unit.name} are both named; {unit.name} counts on its lip"
+            yield FacsWarning("side_over_both", (whole, unit.name), message)
         if side and unit.name in both:
             one = unit_key(unit.name, side)
             message = f"{unit.name} and {one} are both named; {one} counts on its side"

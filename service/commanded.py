@@ -12,7 +12,17 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from engine import LAYERS, Keyframe, Rig, Timeline, hold_units, unit_key
+from engine import (
+    LAYERS,
+    LIPS,
+    Keyframe,
+    Rig,
+    Timeline,
+    hold_units,
+    part_name,
+    unit_key,
+    whole_of,
+)
 
 
 @dataclass
@@ -95,14 +105,16 @@ def commanded_units(
     """Return names, and intensities 0..1 at `times` [s, rising], shape (times, names).
 
     Every unit of the rig has a column, and both sides of one, `L12` and `R12`, of which a side is
-    commanded.
+    commanded, and both lips, `T28` and `B28`.
     """
     recipes = [_recipe(keyframe, rig) for keyframe in timeline.keyframes]
     keys = {key for keyframe in timeline.keyframes for key in keyframe.action_units}
     keys |= {key for recipe in recipes for key in recipe or ()}
     asked = [rig.resolve_unit(key) for key in sorted(keys)]
     sided = {unit_key(unit.name, each) for unit, side in asked if side for each in "LR"}
-    names = [*rig.action_units, *sorted(sided)]
+    parts = {unit.name for unit, _ in asked} - set(rig.action_units)
+    lips = {part_name(whole_of(name), each) for name in parts for each in LIPS}
+    names = [*rig.action_units, *sorted(sided | lips)]
     layers = {layer: _Layer() for layer in LAYERS}
     coming = list(zip(timeline.keyframes, recipes, strict=True))
     rows = np.zeros((len(times), len(names)))

@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from engine import (
+    LIPS,
     SCALES,
     EngineError,
     FacsWarning,
@@ -22,9 +23,6 @@ from engine import (
 
 from .bodies import Units
 from .errors import Unprocessable, refused_by_engine
-
-LIPS = ("T", "B")
-"""Sides of a unit that are lips."""
 
 
 @dataclass(frozen=True)

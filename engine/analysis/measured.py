@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import UnknownName
+from ..facs import whole_of
 from ..head import Head
 from ..landmarks import LANDMARKS_68
 from ..muscle import LidMuscle
@@ -151,6 +152,10 @@ def _asked(rig: Rig, requested: Mapping[str, float], side: str) -> dict[str, flo
         if unit.one_sided and not its_side:
             its_side = "L"
         if its_side in ("", side) and value > 0.0:
+            if unit.name not in rig.action_units:  # One lip is half of the unit that is measured.
+                whole = whole_of(unit.name)
+                asked[whole] = asked.get(whole, 0.0) + 0.5 * value
+                continue
             asked[unit.name] = max(value, asked.get(unit.name, 0.0))
     return asked
 

@@ -1,6 +1,7 @@
 """Action units of the Facial Action Coding System, their notation and their rules (section 3)."""
 
 from .codes import Code, facs_codes
+from .lips import LIPS, PARTED, lip_part, part_name, whole_of
 from .notation import (
     NEUTRAL,
     Term,
@@ -18,7 +19,9 @@ from .warning import FacsWarning
 __all__ = [
     "BANDED",
     "LETTERS",
+    "LIPS",
     "NEUTRAL",
+    "PARTED",
     "REGIONS",
     "SCALES",
     "UNSCORED",
@@ -33,11 +36,14 @@ __all__ = [
     "facs_codes",
     "format_facs",
     "letter_of",
+    "lip_part",
     "nearest_letter",
     "needs",
     "parse_facs",
+    "part_name",
     "print_facs",
     "scale_named",
     "split_side",
     "term_of",
+    "whole_of",
 ]

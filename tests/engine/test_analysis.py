@@ -195,6 +195,11 @@ def test_15_fights_12_and_both_are_reduced(standard_rig):
     assert {"zygomatic_major.L", "depressor_anguli_oris.L"} in muscles
 
 
+def test_one_lip_is_asked_for_as_half_of_its_unit(standard_rig):
+    (one,) = [u for u in analyze_facs(standard_rig, "T24D").seen.units if u.requested > 0.0]
+    assert (one.unit, one.side, one.requested) == ("AU24", "", 0.4)
+
+
 def test_a_palsied_smile_is_seen_on_one_side(standard_rig, basis):
     palsy = {"palsy": {"side": "left", "gain": 0.0}}
     rig = standard_rig.derive(**plain_changes(standard_rig, palsy))

@@ -38,6 +38,13 @@ def test_zero_and_replace_let_go(rig: Rig) -> None:
     assert column(rig, "AU1", [0, 1, 2], first, drop, other) == [0.5, 0.5, 0]
 
 
+def test_lips_have_columns_of_their_own(rig: Rig) -> None:
+    both = Keyframe(action_units={"AU28": 0.6})
+    top = Keyframe(time=1.0, action_units={"T28": 0.2})
+    values = [column(rig, name, [0, 1], both, top) for name in ("AU28", "T28", "B28")]
+    assert values == [[0.6, 0], [0, 0.2], [0, 0.6]]
+
+
 def test_a_higher_layer_overrides_by_its_weight(rig: Rig) -> None:
     low = Keyframe(layer="mood", action_units={"AU12": 1.0})
     high = Keyframe(layer="puppet", action_units={"AU12": 0.2}, weight=0.5)

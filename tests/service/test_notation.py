@@ -126,6 +126,21 @@ def test_what_is_absent_is_named_with_what_comes_nearest(client: TestClient, ses
     assert units == {"AU12": True, "AU21": False}
 
 
+def test_one_lip_is_held_and_read_back(client: TestClient, session: str) -> None:
+    assert rules(client, "T28B") == []
+    assert rules(client, "28C+T28B") == [("side_over_both", ["AU28", "T28"])]
+    control(client, session, facs="28C")
+    control(client, session, facs="T28B")
+    assert held(client, session) == {"T28": 0.4, "B28": 0.6}
+    assert client.get(f"/api/sessions/{session}").json()["merged"]["facs"] == "T28B+B28C"
+    control(client, session, facs="B28B")
+    assert held(client, session) == {"AU28": 0.4}
+    answer = client.get("/api/rigs/standard/expressions/T28E.glb?textures=0")
+    assert answer.status_code == 200
+    answer = client.get("/api/rigs/standard/expressions/T23E.glb?textures=0")
+    assert answer.status_code == 422
+
+
 def test_what_one_lip_cannot_do_both_do(client: TestClient, session: str) -> None:
     control(client, session, facs="T23B+B23D")
     assert held(client, session) == {"AU23": 0.8}
