@@ -78,7 +78,13 @@ def broken_rules(units: Mapping[str, float]) -> list[FacsWarning]:
             no codes are nobody's business.
     """
     terms = list(_seen(units))
-    return [*_excluded(terms), *_on_both_sides(terms), *_alone(terms), *_unsided(terms)]
+    return [
+        *_excluded(terms),
+        *_on_both_sides(terms),
+        *_across(terms),
+        *_alone(terms),
+        *_unsided(terms),
+    ]
 
 
 def _seen(units: Mapping[str, float]) -> Iterator[Term]:
@@ -112,6 +118,14 @@ def _on_both_sides(terms: list[Term]) -> Iterator[FacsWarning]:
                 "side; both are played"
             )
             yield FacsWarning("one_side_only", (one.key, other.key), message)
+
+
+def _across(terms: list[Term]) -> Iterator[FacsWarning]:
+    """A side and a lip of one unit, which have a quarter of the mouth in common."""
+    for one, other in combinations(sorted(terms, key=lambda term: term.order), 2):
+        if one.name == other.name and one.side in ("L", "R") and other.side in ("T", "B"):
+            message = f"{one.key} and {other.key} overlap; where they do, they add up"
+            yield FacsWarning("side_and_lip", (one.key, other.key), message)
 
 
 def _alone(terms: list[Term]) -> Iterator[FacsWarning]:

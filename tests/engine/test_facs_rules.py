@@ -6,8 +6,14 @@ import pytest
 
 from engine import broken_rules, builtin_rig, facs_codes, parse_facs
 from engine.facs import exclusions, needs
+from engine.rig_data import load_emotions
+from engine.vocabulary import lexicon
 
 PAIRS = [(rule, *pair) for rule in exclusions() for pair in rule.pairs]
+RECIPES = sorted(
+    {emotion.recipe for emotion in load_emotions().values() if emotion.recipe}
+    | {v.facs for recipe in lexicon().recipes.values() for v in recipe.variants if v.facs}
+)
 
 
 def found(facs: str) -> list[tuple[str, tuple[str, ...]]]:
@@ -64,6 +70,16 @@ def test_a_unit_of_one_side_is_not_seen_on_both():
     assert found("L30+R30") == [("one_side_only", ("L30", "R30"))]
     assert found("46+R46") == [("one_side_only", ("AU46", "R46"))]
     assert found("30+L30") == []
+
+
+def test_a_side_and_a_lip_of_one_unit_overlap():
+    assert found("T28+L28") == [("side_and_lip", ("L28", "T28"))]
+    assert found("T28+B28") == found("L28+R28") == found("T28+L24") == []
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_no_recipe_that_comes_with_the_engine_breaks_a_rule(recipe):
+    assert found(recipe) == []
 
 
 def test_a_side_of_what_has_none_is_named():
