@@ -41,6 +41,7 @@ sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 360 --columns 4 --set emotions
 	$(BIN)/risorius sheet -o docs/intensities.jpg --view front --size 240 --columns 7 --set intensities
 	$(BIN)/risorius sheet -o docs/combinations.jpg --view front --size 280 --columns 5 --set combinations
+	$(BIN)/risorius sheet -o docs/recipes.jpg --view front --size 200 --columns 9 --set recipes
 	$(BIN)/risorius sheet -o docs/people.jpg --people --only rest --whole \
 		--view front,three-quarter,profile --size 240 --columns 6
 	$(BIN)/risorius sheet -o docs/closeups.jpg --rig standard,mei,ruth,kwame --only rest \

@@ -396,6 +396,30 @@ def inverse(
 
 
 @app.command()
+def emotions(
+    rig: Annotated[str, typer.Option(help="Rig to measure on, or a person.")] = "standard",
+    as_json: Annotated[bool, typer.Option("--json", help="Print figures for machines.")] = False,
+) -> None:
+    """Print every emotion word and what it plays, and measure every face of theirs."""
+    from engine import EngineError, builtin_rig
+
+    from .emotion_measuring import measure_forms
+    from .emotion_page import figures_markdown, words_markdown
+
+    try:
+        with _console.status("measuring") as status:
+            figures = measure_forms(
+                builtin_rig(rig), lambda stage: status.update(f"measuring {stage}")
+            )
+    except EngineError as error:
+        _refuse(f"The emotions cannot be measured: {error}.")
+    if as_json:
+        typer.echo(json.dumps(figures, indent=2, allow_nan=False))
+    else:
+        typer.echo(f"{words_markdown()}\n{figures_markdown(figures)}")
+
+
+@app.command()
 def units(
     rig: Annotated[str, typer.Option(help="Rig to describe, or a person.")] = "standard",
 ) -> None:

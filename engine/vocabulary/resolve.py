@@ -14,7 +14,7 @@ from ..facs import NEUTRAL, Term, format_facs, nearest_letter, split_side
 from .coordinates import shares_around
 from .lexicon import lexicon
 from .meaning import Meaning
-from .mixture import mixed
+from .mixture import HALVES, mixed
 from .words import normal
 
 Turn = Callable[[str], int]
@@ -197,7 +197,7 @@ def _seen(units: Mapping[str, float]) -> Iterable[Term]:
     """Return what of `units` is seen, both sides as one where they have the same letter."""
     read = {split_side(key): value for key, value in units.items() if value >= _SEEN}
     for (name, side), value in read.items():
-        other = read.get((name, "R" if side == "L" else "L"), 0.0) if side else 0.0
+        other = read.get((name, HALVES.get(side, "")), 0.0) if side in HALVES else 0.0
         even = other > 0.0 and nearest_letter(other) == nearest_letter(value)
         if not (even and side == "R"):
             yield Term(name, "" if even else side, value)

@@ -249,6 +249,8 @@ def test_scores_of_nothing_are_refused(scores):
 def test_sides_are_summed_by_side():
     assert mixed([("R12E", 0.5), ("12E", 0.5)]) == {"L12": 0.5, "R12": 1.0}
     assert mixed([("R12E", 0.5), ("L12E", 0.5)]) == {"AU12": 0.5}
+    assert mixed([("T28E", 0.5), ("B28E", 0.5)]) == {"T28": 0.5, "B28": 0.5}
+    assert mixed([("T28E", 0.5), ("L28E", 0.5)]) == {"T28": 0.5, "L28": 0.5}
     assert mixed([("", 1.0)]) == {}
     assert mixed([("12E", 0.75), ("6E+12E", 0.75)]) == {"AU12": 1.0, "AU6": 0.75}
 

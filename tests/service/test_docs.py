@@ -17,6 +17,8 @@ from engine import builtin_rig, recipe_attributes
 from engine.facs import exclusions, needs
 from service.app import create_app
 from service.cli import app as command_line
+from service.emotion_measuring import forms
+from service.emotion_page import words_markdown
 from service.protocol import __doc__ as layout
 from service.server import running
 from service.settings import Settings
@@ -117,6 +119,26 @@ def test_the_page_of_action_units_is_what_the_command_prints() -> None:
     assert printed.exit_code == 0
     page = (DOCS / "action-units.md").read_text(encoding="utf-8")
     assert page == printed.stdout, "risorius units > docs/action-units.md"
+
+
+def test_the_page_of_emotions_has_every_word_and_every_face() -> None:
+    page = (DOCS / "emotions.md").read_text(encoding="utf-8")
+    words = words_markdown()
+    assert page.startswith(words), "risorius emotions > docs/emotions.md"
+    measured = re.findall(r"^\| (.+?) \| `(\S+)` \| \d+ of \d+ \|", page[len(words) :], re.M)
+    assert measured == [(form.face, form.facs) for form in forms()]
+
+
+def test_the_page_of_emotions_shows_no_face_that_breaks() -> None:
+    page = (DOCS / "emotions.md").read_text(encoding="utf-8")
+    rows = re.findall(
+        r"of \d+ \| .+ \| ([\d.]+) \| (.+) \| (.+) \| (.+) \| ([\d.]+) \|$", page, re.M
+    )
+    assert len(rows) == len(list(forms()))
+    for least, inverted, folds, through, speed in rows:
+        assert (inverted, folds, through) == ("0", "0", "0")
+        assert float(least) > 0.0
+        assert float(speed) < 5.0
 
 
 def sent_in(page: str, path: str) -> list[str]:
