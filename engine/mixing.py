@@ -11,7 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .channels import GROUPS
-from .compiling import kernel
+from .compiling import brief
 from .facs import LIPS, ActionUnit, part_name, whole_of
 from .rig import Rig
 from .timeline import LAYERS, Keyframe, ticks
@@ -37,7 +37,7 @@ class Held:
         return not (self.action_units or self.muscles or self.axes)
 
 
-@kernel
+@brief
 def ramps_at(
     start: FloatArray, target: FloatArray, begin: FloatArray, length: FloatArray, tick: int
 ) -> FloatArray:
@@ -50,7 +50,7 @@ def ramps_at(
     return values
 
 
-@kernel
+@brief
 def eased(start: float, target: float, begin: float, length: float, tick: int) -> float:
     """Return where a ramp stands at `tick`: an ease in and out, level at both ends."""
     if tick >= begin + length:
@@ -59,7 +59,7 @@ def eased(start: float, target: float, begin: float, length: float, tick: int) -
     return start + (target - start) * done * done * (3.0 - 2.0 * done)
 
 
-@kernel
+@brief
 def merge(ramps: FloatArray, tick: int) -> FloatArray:
     """Return what layers come to at `tick`, each over the lower by its share, (channels,).
 
