@@ -46,12 +46,12 @@ from .frame import Frame, Pose
 from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .head.textures import head_textures
+from .held import hold_units, recipe_of, unit_key
 from .inverse import Inverse, Response, invert, question_of, response_of, search_for
 from .jaw import JawHinge
 from .kept import keep, read_kept
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import LANDMARKS, measure_units
-from .mixing import hold_units, unit_key
 from .muscle import AirPressure
 from .quality import judge
 from .rig import (
@@ -68,7 +68,16 @@ from .settling import settled, settled_units
 from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .textures import texture_names, textures_of
-from .timeline import LAYERS, LONGEST_ONSET, TICKS_PER_SECOND, Keyframe, Timeline
+from .timeline import (
+    ANYONE,
+    LAYERS,
+    LONGEST_ONSET,
+    OWNER,
+    TICKS_PER_SECOND,
+    Keyframe,
+    Timeline,
+    ticks,
+)
 from .vocabulary import (
     Lexicon,
     Resolved,
@@ -78,9 +87,11 @@ from .vocabulary import (
     resolve_scores,
 )
 from .warming import kernels_are_kept, warm_kernels
+from .writers import Writers
 
 __all__ = [
     "ALIKE",
+    "ANYONE",
     "BUILTIN_RIGS",
     "ENGINE_HASH",
     "LANDMARKS",
@@ -94,6 +105,7 @@ __all__ = [
     "MODEL_CHOICES",
     "MOST_ALIKE",
     "NEUTRAL",
+    "OWNER",
     "PARTED",
     "REGIONS",
     "SCALES",
@@ -134,6 +146,7 @@ __all__ = [
     "Timeline",
     "UnitBasis",
     "UnknownName",
+    "Writers",
     "analyze",
     "analyze_facs",
     "broken_rules",
@@ -165,6 +178,7 @@ __all__ = [
     "random_mixes",
     "read_kept",
     "recipe_attributes",
+    "recipe_of",
     "record",
     "resolve_coordinates",
     "resolve_label",
@@ -182,6 +196,7 @@ __all__ = [
     "term_of",
     "texture_names",
     "textures_of",
+    "ticks",
     "unit_basis",
     "unit_key",
     "warm_kernels",

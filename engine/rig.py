@@ -48,7 +48,7 @@ from .rig_data import (
     load_muscles,
     load_reaches,
 )
-from .timeline import LAYERS, Keyframe
+from .timeline import LAYERS, Keyframe, check_owner
 from .tissue import PAPER_PARAMETERS, TissueParameters, check_fields
 
 BUILTIN_RIGS = ("standard", "paper")
@@ -272,6 +272,7 @@ class Rig:
         """
         if keyframe.layer not in LAYERS:
             raise UnknownName("layer", keyframe.layer, LAYERS)
+        check_owner(keyframe.owner)
         warnings = [str(warning) for warning in self.unit_warnings(keyframe.action_units)]
         for key, value in keyframe.action_units.items():
             _check_range(key, value, 0.0, 1.0)
@@ -287,7 +288,7 @@ class Rig:
             self.resolve_emotion(keyframe.emotion[0])
             _check_range("intensity", keyframe.emotion[1], 0.0, 1.0)
         _check_range("weight", keyframe.weight, 0.0, 1.0)
-        for name in ("fade", "fade_out", "hold"):
+        for name in ("fade", "fade_out", "hold", "ttl"):
             value = getattr(keyframe, name)
             if value is not None:
                 _check_range(name, value, 0.0, 3600.0)

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Any
 
-from .errors import InvalidNotation, InvalidTrack, UnknownName
+from .errors import InvalidNotation, InvalidTrack, InvalidValue, UnknownName
 from .facs import LETTERS, parse_facs, scale_named
 
 LAYERS = ("idle", "mood", "emotion", "speech", "puppet")
 """Layers from the lowest to the highest; a higher one overrides a lower, muscle by muscle."""
+ANYONE = "anyone"
+"""The owner of a command that names none."""
+OWNER = r"[A-Za-z0-9_.:@-]{1,64}"
+"""What an owner may be called, a regular expression."""
 TICKS_PER_SECOND = 60
 MAX_SECONDS = 3600.0
 LONGEST_ONSET = 1.0
@@ -31,23 +36,30 @@ class Keyframe:
     Attributes:
         time: Seconds from the start of a timeline; ignored by a live face.
         layer: One of `LAYERS`.
+        owner: Whose command it is: in a layer each owner holds a set of its own.
         action_units: Intensity 0..1 by "AU12" (both sides), "L12" or "R12"; 0 lets go.
         muscles: Raw activation 0..1 by muscle name; 0 lets go.
         jaw: "pitch" and "yaw", degrees, "thrust", mm; as in gaze and head, 0 lets go.
         gaze: "yaw" and "pitch", degrees: left and up are positive; "vergence" crosses the eyes.
         head: "yaw", "pitch" and "roll", degrees: left, up, to the left shoulder; "thrust", mm.
         tongue: "thrust", mm out of the mouth.
-        emotion: Label and intensity; it replaces the layer's action units.
+        emotion: Label and intensity: an expression by name.
+        expression: True if its units are a whole expression, as an emotion's are: they replace
+            those that the owner held in the layer, and cover those that others hold there.
         fade: Seconds over which the face moves there; None gives each action unit its own onset or
             offset, and everything else none.
-        hold: Seconds to stay before the whole layer lets go; None stays.
-        fade_out: Seconds over which it lets go after `hold`.
+        hold: Seconds to stay, once reached, before all that the owner holds there lets go; None
+            stays. Each command of an owner says it anew.
+        ttl: Seconds from now after which it lets go at the latest; each command says it anew.
+        fade_out: Seconds over which it lets go after `hold` or `ttl`.
         weight: How much of the lower layers is overridden, 0..1.
-        replace: True to let go of everything else in the layer.
+        replace: True to let go of everything else that the owner holds in the layer; without an
+            owner, of everything that anybody does.
     """
 
     time: float = 0.0
     layer: str = "puppet"
+    owner: str = ANYONE
     action_units: Mapping[str, float] = field(default_factory=dict)
     muscles: Mapping[str, float] = field(default_factory=dict)
     jaw: Mapping[str, float] = field(default_factory=dict)
@@ -57,9 +69,11 @@ class Keyframe:
     emotion: tuple[str, float] | None = None
     fade: float | None = 0.0
     hold: float | None = None
+    ttl: float | None = None
     fade_out: float = 0.4
     weight: float = 1.0
     replace: bool = False
+    expression: bool = False
 
     def to_json(self) -> dict[str, object]:
         """Return the keyframe as plain data, without what it does not say."""
@@ -133,6 +147,19 @@ class Timeline:
         }
 
 
+def check_owner(owner: object) -> str:
+    """Return what names an owner.
+
+    Raises:
+        InvalidValue: If it is no such text.
+    """
+    if not isinstance(owner, str) or re.fullmatch(OWNER, owner) is None:
+        raise InvalidValue(
+            f"owner is {owner!r}; expected 1 to 64 letters, digits and '_', '.', ':', '@' or '-'"
+        )
+    return owner
+
+
 def ticks(seconds: float) -> int:
     """Return the nearest whole number of ticks in `seconds`."""
     return round(seconds * TICKS_PER_SECOND)
@@ -140,7 +167,7 @@ def ticks(seconds: float) -> int:
 
 _MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head", "tongue")
 _NUMBERS = ("time", "fade_out", "weight")
-_KNOWN = {f.name for f in fields(Keyframe)} | {"facs", "scale"}
+_KNOWN = {f.name for f in fields(Keyframe)} | {"facs", "scale", "fade_in"}
 
 
 def _keyframe(index: int, entry: object) -> Keyframe:
@@ -161,18 +188,29 @@ def _keyframe(index: int, entry: object) -> Keyframe:
     for name in _NUMBERS:
         if name in entry:
             values[name] = _number(index, name, entry[name])
-    if "fade" in entry:
-        values["fade"] = None if entry["fade"] is None else _number(index, "fade", entry["fade"])
-    if entry.get("hold") is not None:
-        values["hold"] = _number(index, "hold", entry["hold"])
+    for name in ("fade_in", "fade"):
+        if name in entry:
+            values["fade"] = None if entry[name] is None else _number(index, name, entry[name])
+    for name in ("hold", "ttl"):
+        if entry.get(name) is not None:
+            values[name] = _number(index, name, entry[name])
     layer = entry.get("layer", "puppet" if "emotion" not in entry else "emotion")
     if layer not in LAYERS:
         raise InvalidTrack(f"keyframe {index}: layer is {layer!r}; expected one of {LAYERS}")
     values["layer"] = layer
+    values["owner"] = _owner(index, entry.get("owner", ANYONE))
     values["replace"] = bool(entry.get("replace", False))
+    values["expression"] = bool(entry.get("expression", False))
     if "emotion" in entry:
         values["emotion"] = _emotion(index, entry["emotion"])
     return Keyframe(**values)
+
+
+def _owner(index: int, value: object) -> str:
+    try:
+        return check_owner(value)
+    except InvalidValue as error:
+        raise InvalidTrack(f"keyframe {index}: {error}") from error
 
 
 def _scale(index: int, value: object) -> str:
@@ -232,6 +270,8 @@ def _finite(place: str, value: object) -> float:
 
 def _end(keyframe: Keyframe) -> float:
     """Return when a keyframe has played, its fade-out included if it lets go [s]."""
-    lets_go = 0.0 if keyframe.hold is None else keyframe.hold + keyframe.fade_out
     fade = LONGEST_ONSET if keyframe.fade is None else keyframe.fade
-    return keyframe.time + fade + lets_go
+    ends = [] if keyframe.ttl is None else [keyframe.ttl]
+    ends += [] if keyframe.hold is None else [fade + keyframe.hold]
+    lets_go = min(ends) + keyframe.fade_out if ends else 0.0
+    return keyframe.time + max(lets_go, fade)

@@ -5,6 +5,7 @@ Unknown fields, NaN and infinity are refused; numbers and sizes are bounded.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
@@ -17,11 +18,12 @@ from pydantic import (
     JsonValue,
     StrictBool,
     TypeAdapter,
+    WithJsonSchema,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
 
-from engine import MAX_ACTIVATION
+from engine import ANYONE, MAX_ACTIVATION, OWNER
 
 from .explaining import UNKNOWN_FIELD
 
@@ -39,6 +41,18 @@ Letter = Annotated[
 ]
 LayerName = Literal["idle", "mood", "emotion", "speech", "puppet"]
 Scale = Literal["linear", "banded"]
+
+
+def _named(owner: str) -> str:
+    """Refuse a text that names no owner."""
+    if re.fullmatch(OWNER, owner) is None:
+        raise ValueError("expected 1 to 64 letters, digits and '_', '.', ':', '@' or '-'")
+    return owner
+
+
+Owner = Annotated[
+    str, AfterValidator(_named), WithJsonSchema({"type": "string", "pattern": f"^{OWNER}$"})
+]
 
 _DEPTH_LIMIT = 8
 _ITEM_LIMIT = 20_000
@@ -142,7 +156,34 @@ class FacsRequest(Units):
     rig: Name = "standard"
 
 
-class Controls(Units):
+class Write(Body):
+    """What every command says of itself: where it goes, how strongly, for how long, and whose."""
+
+    owner: Owner = Field(
+        default=ANYONE,
+        examples=["dialogue-agent"],
+        description="Whose command it is: any name. In a layer each owner holds a set of its own; "
+        "the last to come counts, and what it held over returns when it lets go.",
+    )
+    weight: Share = Field(
+        default=1.0, description="How much of what lies beneath is overridden, 0 to 1."
+    )
+    hold: Seconds | None = Field(
+        default=None,
+        description="Seconds that it stays once reached; then all that its owner holds in the "
+        "layer lets go. Without it and without ttl it stays.",
+    )
+    ttl: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = Field(
+        default=None,
+        description="Lease: seconds from now after which all that its owner holds in the layer "
+        "lets go, unless the owner writes again.",
+    )
+    fade_out: Seconds = Field(
+        default=0.4, description="Seconds over which it lets go after hold or ttl."
+    )
+
+
+class Controls(Units, Write):
     """Commands to one layer of a face; what is not named stays as it is."""
 
     muscles: dict[Name, Activation] | None = Field(
@@ -158,11 +199,22 @@ class Controls(Units):
         default=0.0,
         description="Seconds until the commands are reached; null gives each unit its own.",
     )
-    layer: LayerName = "puppet"
-    weight: Share = 1.0
-    ttl: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = Field(
-        default=None, description="Seconds after which the commands lapse."
+    fade_in: Seconds | None = Field(default=0.0, description="Another name of fade.")
+    layer: LayerName = Field(
+        default="puppet",
+        description="idle < mood < emotion < speech < puppet: a higher one overrides a lower, "
+        "muscle by muscle, where it asks for anything.",
     )
+
+    @property
+    def reached(self) -> float | None:
+        """Seconds until the commands are reached, by either name; None is each unit's own time."""
+        return self.fade_in if "fade_in" in self.model_fields_set else self.fade
+
+    @property
+    def names_fade(self) -> bool:
+        """Whether the client said how long it takes."""
+        return bool({"fade", "fade_in"} & self.model_fields_set)
 
 
 class Score(Body):
@@ -172,7 +224,7 @@ class Score(Body):
     score: Share
 
 
-class EmotionCommand(Body):
+class EmotionCommand(Write):
     """An emotion to play: one label, scores of several, or coordinates."""
 
     label: Name | None = Field(
@@ -199,10 +251,6 @@ class EmotionCommand(Body):
         default=None,
         description="Seconds until it is reached; without it each unit takes its own.",
     )
-    hold: Seconds | None = Field(
-        default=None, description="Seconds it is held; without it, it stays."
-    )
-    fade_out: Seconds = 0.4
     layer: LayerName = "emotion"
 
 

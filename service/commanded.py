@@ -6,7 +6,7 @@ eases to its target over the command's fade, and a higher layer overrides a lowe
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,11 +15,14 @@ import numpy.typing as npt
 from engine import (
     LAYERS,
     LIPS,
+    TICKS_PER_SECOND,
     Keyframe,
     Rig,
     Timeline,
-    hold_units,
+    Writers,
     part_name,
+    recipe_of,
+    ticks,
     unit_key,
     whole_of,
 )
@@ -47,56 +50,60 @@ class _Ramp:
 
 @dataclass
 class _Layer:
-    """What one layer holds, by action unit, and how much of the lower layers it overrides."""
+    """What one layer comes to, by action unit, and how much of the lower layers it overrides."""
 
-    units: dict[str, float] = field(default_factory=dict)
     values: dict[str, _Ramp] = field(default_factory=dict)
     shares: dict[str, _Ramp] = field(default_factory=dict)
-    weight: float = 1.0
-    expires: float | None = None
-    fade_out: float = 0.0
 
-    def apply(self, keyframe: Keyframe, recipe: Mapping[str, float] | None, rig: Rig) -> None:
-        before = dict(self.units)
-        if keyframe.replace or recipe is not None:
-            self.units = {}
-        hold_units(rig, self.units, recipe or {})
-        hold_units(rig, self.units, keyframe.action_units)
-        self.weight = keyframe.weight
-        self.expires = None
-        if keyframe.hold is not None:
-            fade = max(self._fades(keyframe, before, rig).values(), default=0.0)
-            self.expires = keyframe.time + fade + keyframe.hold
-            self.fade_out = keyframe.fade_out
-        self._retarget(keyframe.time, self._fades(keyframe, before, rig))
-
-    def let_go(self, time: float) -> None:
-        if self.expires is not None and time >= self.expires:
-            self.units = {}
-            self._retarget(self.expires, dict.fromkeys(self.shares, self.fade_out))
-            self.expires = None
-
-    def _fades(self, keyframe: Keyframe, before: Mapping[str, float], rig: Rig) -> dict[str, float]:
-        """Return the seconds that each unit takes: the command's, or its own onset or offset."""
-        keys = {*self.units, *self.values}
-        if keyframe.fade is not None:
-            return dict.fromkeys(keys, keyframe.fade)
-        fades = {}
-        for key in keys:
-            unit, _ = rig.resolve_unit(key)
-            rises = self.units.get(key, 0.0) > before.get(key, 0.0)
-            fades[key] = unit.onset if rises else unit.offset
-        return fades
-
-    def _retarget(self, time: float, fades: Mapping[str, float]) -> None:
-        for key in {*self.units, *self.values}:
+    def go(
+        self, units: Mapping[str, tuple[float, float]], time: float, fades: Mapping[str, float]
+    ) -> None:
+        """Send each unit to its value and share, over its fade, 0 if it has none [seconds]."""
+        for key in {*units, *self.values}:
             fade = fades.get(key, 0.0)
             value = self.values.setdefault(key, _Ramp())
             share = self.shares.setdefault(key, _Ramp())
-            if key in self.units:
-                fresh = share.at(time) == 0.0
-                value.move(self.units[key], time, 0.0 if fresh else fade)
-            share.move(self.weight if key in self.units else 0.0, time, fade)
+            target, weight = units.get(key, (value.target, 0.0))
+            fresh = share.at(time) == 0.0
+            value.move(target, time, 0.0 if fresh else fade)
+            share.move(weight, time, fade)
+
+
+class _Score:
+    """What a timeline commands so far: who holds what, and the layers on their way there."""
+
+    def __init__(self, rig: Rig) -> None:
+        self.layers = {layer: _Layer() for layer in LAYERS}
+        self._writers = Writers(rig)
+
+    def apply(self, keyframe: Keyframe) -> None:
+        tick, layer = ticks(keyframe.time), self.layers[keyframe.layer]
+        before = self._writers.units(keyframe.layer)
+        self._writers.take(keyframe, tick)
+        units = self._writers.shared_units(keyframe.layer)
+        layer.go(units, keyframe.time, self._fades(keyframe, before, {*units, *layer.values}))
+
+    def let_go(self, time: float) -> None:
+        """Let go of every writer whose time is up."""
+        for expired in self._writers.expire(ticks(time)):
+            layer = self.layers[expired.layer]
+            fades = dict.fromkeys(layer.values, expired.fade_out / TICKS_PER_SECOND)
+            units = self._writers.shared_units(expired.layer)
+            layer.go(units, expired.tick / TICKS_PER_SECOND, fades)
+
+    def _fades(
+        self, keyframe: Keyframe, before: Mapping[str, float], keys: Iterable[str]
+    ) -> dict[str, float]:
+        """Return the seconds that each unit takes: the command's, or its own onset or offset."""
+        if keyframe.fade is not None:
+            return dict.fromkeys(keys, keyframe.fade)
+        after, rig = self._writers.units(keyframe.layer), self._writers.rig
+        fades = {}
+        for key in keys:
+            unit, _ = rig.resolve_unit(key)
+            rises = after.get(key, 0.0) > before.get(key, 0.0)
+            fades[key] = unit.onset if rises else unit.offset
+        return fades
 
 
 def commanded_units(
@@ -107,35 +114,24 @@ def commanded_units(
     Every unit of the rig has a column, and both sides of one, `L12` and `R12`, of which a side is
     commanded, and both lips, `T28` and `B28`.
     """
-    recipes = [_recipe(keyframe, rig) for keyframe in timeline.keyframes]
     keys = {key for keyframe in timeline.keyframes for key in keyframe.action_units}
-    keys |= {key for recipe in recipes for key in recipe or ()}
+    keys |= {key for keyframe in timeline.keyframes for key in recipe_of(keyframe.emotion, rig)}
     asked = [rig.resolve_unit(key) for key in sorted(keys)]
     sided = {unit_key(unit.name, each) for unit, side in asked if side for each in "LR"}
     parts = {unit.name for unit, _ in asked} - set(rig.action_units)
     lips = {part_name(whole_of(name), each) for name in parts for each in LIPS}
     names = [*rig.action_units, *sorted(sided | lips)]
-    layers = {layer: _Layer() for layer in LAYERS}
-    coming = list(zip(timeline.keyframes, recipes, strict=True))
+    score, coming = _Score(rig), list(timeline.keyframes)
     rows = np.zeros((len(times), len(names)))
     for row, time in enumerate(times):
-        while coming and coming[0][0].time <= time:
-            keyframe, recipe = coming.pop(0)
-            layers[keyframe.layer].let_go(keyframe.time)
-            layers[keyframe.layer].apply(keyframe, recipe, rig)
-        for layer in layers.values():
-            layer.let_go(time)
+        while coming and coming[0].time <= time:
+            score.let_go(coming[0].time)
+            score.apply(coming.pop(0))
+        score.let_go(time)
+        for layer in score.layers.values():
             for column, name in enumerate(names):
                 if name in layer.values:
                     share = layer.shares[name].at(time)
                     mixed = rows[row, column] * (1.0 - share) + layer.values[name].at(time) * share
                     rows[row, column] = mixed
     return names, rows
-
-
-def _recipe(keyframe: Keyframe, rig: Rig) -> dict[str, float] | None:
-    if keyframe.emotion is None:
-        return None
-    label, intensity = keyframe.emotion
-    terms = rig.resolve_emotion(label).terms
-    return {term.key: term.intensity * intensity for term in terms}

@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
-from engine import (
-    EngineError,
-    Keyframe,
-    Model,
-    Rig,
-    Timeline,
-    hold_units,
-    unit_key,
-)
+from engine import EngineError, Keyframe, Model, Rig, Timeline
 
 from .bodies import (
     Controls,
@@ -29,6 +21,9 @@ from .emotions import Turns, play_emotion
 from .errors import Unprocessable, refused_by_engine
 from .facs import playable
 
+_OF_BOTH = ("layer", "owner", "weight", "hold", "ttl", "fade_out")
+"""What a keyframe of a clip and the emotion in it may both say."""
+
 
 def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyframe:
     """Return the keyframe that `controls` ask for; with `replace`, the layer holds nothing else.
@@ -39,6 +34,8 @@ def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyfram
         Unprocessable: For a FACS string that cannot be read, a unit that neither FACS nor the rig
             has, or what is not available yet.
     """
+    if {"fade", "fade_in"} <= controls.model_fields_set:
+        raise Unprocessable("invalid_body", "give either 'fade' or 'fade_in': they are the same")
     for name in ("arkit", "visemes"):
         if getattr(controls, name) is not None:
             raise Unprocessable(
@@ -52,8 +49,11 @@ def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyfram
         gaze=_given(controls.gaze),
         head=_given(controls.head),
         tongue=_given(controls.tongue),
-        fade=controls.fade,
-        hold=controls.ttl,
+        owner=controls.owner,
+        fade=controls.reached,
+        hold=controls.hold,
+        ttl=controls.ttl,
+        fade_out=controls.fade_out,
         weight=controls.weight,
         replace=replace,
     )
@@ -101,50 +101,9 @@ def live_model(choice: ModelChoice, rig: Rig) -> Model:
     return replace(model, integrator="verlet")
 
 
-def hold(held: dict[str, Keyframe], keyframe: Keyframe, rig: Rig) -> None:
-    """Take `keyframe` into `held`: for each layer one keyframe with all that it holds.
-
-    A command that lets go by itself takes the whole layer with it, and so leaves nothing.
-    """
-    before = held.get(keyframe.layer)
-    if keyframe.hold is not None:
-        held.pop(keyframe.layer, None)
-        return
-    if before is None or keyframe.replace:
-        before = Keyframe(layer=keyframe.layer)
-    units = {} if keyframe.emotion is not None else before.action_units
-    held[keyframe.layer] = replace(
-        keyframe,
-        action_units=_held_units(units, keyframe.action_units, rig),
-        muscles={**before.muscles, **keyframe.muscles},
-        jaw={**before.jaw, **keyframe.jaw},
-        gaze={**before.gaze, **keyframe.gaze},
-        head={**before.head, **keyframe.head},
-        tongue={**before.tongue, **keyframe.tongue},
-        emotion=keyframe.emotion or before.emotion,
-        fade=0.0,
-        replace=False,
-    )
-
-
-def _held_units(
-    before: Mapping[str, float], named: Mapping[str, float], rig: Rig
-) -> dict[str, float]:
-    """Return the units a layer holds; a unit at 0 is kept, for it lets go of an emotion's."""
-    units = dict(before)
-    hold_units(rig, units, named)
-    for key in (key for key, value in named.items() if value == 0.0):
-        unit, side = rig.resolve_unit(key)
-        sides = [unit_key(unit.name, each) for each in "LR"]
-        split = not side and any(each in units for each in sides)
-        for each in sides if split else [unit_key(unit.name, side)]:
-            units.setdefault(each, 0.0)
-    return units
-
-
-def held_to_json(held: Mapping[str, Keyframe]) -> list[Any]:
-    """Return what the layers hold as plain data."""
-    return [{**keyframe.to_json(), "layer": layer} for layer, keyframe in held.items()]
+def held_to_json(held: Iterable[Keyframe]) -> list[Any]:
+    """Return the commands that hold what a face's writers do as plain data."""
+    return [{**keyframe.to_json(), "layer": keyframe.layer} for keyframe in held]
 
 
 def held_from_json(data: Sequence[Mapping[str, Any]], rig: Rig) -> list[Keyframe]:
@@ -179,17 +138,15 @@ def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig, turns: Turns
     """Return `keyframe` with the emotion of `body`; fields that `body` gives itself win."""
     command = body.emotion
     if isinstance(command, str):
-        fade = body.fade if "fade" in body.model_fields_set else None
-        command = EmotionCommand(label=command, fade_in=fade, hold=body.ttl)
+        fade = body.reached if body.names_fade else None
+        command = EmotionCommand(label=command, fade_in=fade)
     played = play_emotion(command or EmotionCommand(), rig, turns).keyframe
     given = body.model_fields_set
     return replace(
         keyframe,
-        layer=body.layer if "layer" in given else played.layer,
         emotion=played.emotion,
+        expression=played.expression,
         action_units={**played.action_units, **keyframe.action_units},
-        fade=body.fade if "fade" in given else played.fade,
-        hold=body.ttl if "ttl" in given else played.hold,
-        fade_out=played.fade_out,
-        replace=keyframe.replace or played.replace,
+        fade=body.reached if body.names_fade else played.fade,
+        **{name: getattr(played, name) for name in _OF_BOTH if name not in given},
     )

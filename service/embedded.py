@@ -74,7 +74,7 @@ class _Group:
         model: Of all its faces.
         simulator: Owned by the simulation thread.
         awake: Faces that were not asleep after the last tick.
-        waiting: Faces, asleep or not, whose command lets go by itself: ticks until then.
+        waiting: Faces, asleep or not, whose commands let go by themselves: ticks until then.
         ticks: Ticks stepped.
     """
 
@@ -385,9 +385,11 @@ class EmbeddedRunner:
         group = self._group(session)
         tick = group.simulator.apply(session, keyframe)
         group.awake.add(session)
-        if keyframe.hold is not None:
+        if keyframe.hold is not None or keyframe.ttl is not None:
             fade = LONGEST_ONSET if keyframe.fade is None else keyframe.fade
-            left = math.ceil((fade + keyframe.hold) * Simulator.TICKS_PER_SECOND) + 2
+            ends = [math.inf if keyframe.ttl is None else keyframe.ttl]
+            ends += [] if keyframe.hold is None else [fade + keyframe.hold]
+            left = math.ceil(min(ends) * Simulator.TICKS_PER_SECOND) + 2
             group.waiting[session] = max(left, group.waiting.get(session, 0))
         return tick
 

@@ -82,15 +82,18 @@ def play_emotion(command: EmotionCommand, rig: Rig, turns: Turns) -> Played:
     units = {key: value * command.intensity for key, value in resolved.units.items()}
     keyframe = Keyframe(
         layer=command.layer,
+        owner=command.owner,
         fade=command.fade_in,
         hold=command.hold,
+        ttl=command.ttl,
         fade_out=command.fade_out,
+        weight=command.weight,
     )
     name = _measured(resolved, rig)
     if name is not None:
         keyframe = replace(keyframe, emotion=(name, command.intensity))
     else:
-        keyframe = replace(keyframe, action_units=units, replace=True)
+        keyframe = replace(keyframe, action_units=units, expression=True)
     return Played(keyframe, resolved, units)
 
 

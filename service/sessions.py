@@ -12,11 +12,11 @@ from typing import Any
 
 import structlog
 
-from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline
+from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline, Writers
 
 from .bodies import Units
 from .clashes import clashes
-from .commands import held_from_json, held_to_json, hold
+from .commands import held_from_json, held_to_json
 from .errors import Busy, NotFound, refused_by_engine
 from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_frame
 from .rigs import Rigs
@@ -50,7 +50,7 @@ class Session:
         created: When it was opened [s since 1970].
         used: When somebody last spoke to it or watched it.
         frame: Its latest frame.
-        held: For each layer, one keyframe with all that it holds; survives a restart.
+        held: What each writer holds in each layer, and how long; survives a restart.
         commands: The timeline so far, oldest first.
         viewers: The sockets that watch it.
         editing: Held while a live edit derives a rig, so that edits follow each other.
@@ -63,7 +63,7 @@ class Session:
     created: float
     used: float
     frame: Frame
-    held: dict[str, Keyframe] = field(default_factory=dict)
+    held: Writers
     commands: deque[Command] = field(default_factory=lambda: deque(maxlen=_COMMANDS_KEPT))
     viewers: set[Viewer] = field(default_factory=set)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
@@ -97,9 +97,9 @@ class Session:
         for viewer in self.viewers:
             viewer.offer(event)
 
-    def to_row(self) -> dict[str, Any]:
-        """Return what the store keeps of it."""
-        held = held_to_json(self.held)
+    def to_row(self, tick: int) -> dict[str, Any]:
+        """Return what the store keeps of it at `tick`."""
+        held = held_to_json(self.held.keyframes(tick))
         return {"id": self.id, "rig": self.rig.id, "held": held, "used": self.used}
 
     def describe(self) -> dict[str, object]:
@@ -130,9 +130,19 @@ class Session:
 
     def clashes_of(self, command: Units, keyframe: Keyframe) -> list[str]:
         """Return what to say of a command that was applied, beside what its layer holds."""
-        layer = self.held.get(keyframe.layer)
-        held = None if layer is None else layer.action_units
+        held = self.held.units(keyframe.layer)
         return [str(clash) for clash in clashes(command, keyframe, self.rig, held)]
+
+    def take(self, keyframe: Keyframe, tick: int) -> list[str]:
+        """Take a command that took effect at `tick`; return who stands over which of it."""
+        for _ in self.held.expire(tick):
+            pass
+        self.held.take(keyframe, tick)
+        return [
+            f"{', '.join(names)}: {owner!r} writes it in {keyframe.layer!r} too, and counts; "
+            f"this waits beneath until {owner!r} lets go or has been quiet for half a second"
+            for owner, names in self.held.beneath(keyframe).items()
+        ]
 
     def hello(self, view: View) -> dict[str, object]:
         """Return the first event of a socket."""
@@ -265,7 +275,7 @@ class Sessions:
         except EngineError as error:
             raise refused_by_engine(error) from error
         session.commands.append(Command(tick, keyframe))
-        hold(session.held, keyframe, session.rig)
+        warnings += session.take(keyframe, tick)
         session.unsaved = session.state_changed = True
         return tick, warnings
 
@@ -274,7 +284,7 @@ class Sessions:
         move = Move(rig)
         tick = await self._runner.apply(session.id, move)
         session.commands.append(Command(tick, move))
-        session.rig = rig
+        session.rig, session.held = rig, session.held.on(rig)
         self._rigs.bake(rig)
         session.unsaved = session.state_changed = True
         session.tell({"type": "rig", "session": session.id, **session.on_rig()})
@@ -388,9 +398,19 @@ class Sessions:
             _LOG.exception("sessions could not be saved", sessions=len(changed))
 
     async def _save(self, sessions: Sequence[Session]) -> None:
-        store, rows = self._store, [session.to_row() for session in sessions]
+        store = self._store
+        rows = [session.to_row(await self._tick_of(session)) for session in sessions]
         if rows:
             await store.aside(lambda: store.keep_sessions(rows))
+
+    async def _tick_of(self, session: Session) -> int:
+        """Return a session's tick: no frame tells it of a face that sleeps until a lease ends."""
+        if session.held.alarm() is None:
+            return session.frame.tick
+        try:
+            return (await self._runner.view(session.id)).frame.tick
+        except NotFound:  # It was closed meanwhile.
+            return session.frame.tick
 
     async def _forget(self, session_id: str) -> None:
         store = self._store
@@ -407,10 +427,10 @@ class Sessions:
         timeline = Timeline(tuple(held_from_json(row.held, rig)), duration=1.0)
         await self._runner.open(row.id, rig, timeline, model)
         view = await self._runner.view(row.id)
-        session = Session(row.id, rig, model, row.created, time.time(), view.frame)
+        session = Session(row.id, rig, model, row.created, time.time(), view.frame, Writers(rig))
         for keyframe in timeline.keyframes:
             session.commands.append(Command(view.frame.tick, keyframe))
-            hold(session.held, keyframe, session.rig)
+            session.take(keyframe, view.frame.tick)
         self._live[row.id] = session
         self._rigs.bake(rig)
         return session

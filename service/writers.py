@@ -11,11 +11,16 @@ _POSED = ("jaw", "gaze", "head", "tongue")
 
 
 def with_writers(report: Mapping[str, object]) -> dict[str, object]:
-    """Return a face's report with `facs` and `writers` beside what its layers make together."""
+    """Return a face's report with what its layers make together told by layer and by owner.
+
+    Beside it stand `facs`; `writers`: for each thing the layers that hold it; and `owners`: for
+    each thing who holds it where.
+    """
     layers, merged = report["layers"], report["merged"]
     assert isinstance(layers, Mapping)
     assert isinstance(merged, Mapping)
-    return with_facs({**report, "merged": {**merged, "writers": writers(layers)}})
+    told = {**merged, "writers": writers(layers), "owners": owners(layers)}
+    return with_facs({**report, "merged": told})
 
 
 def writers(layers: Mapping[str, Mapping[str, object]]) -> dict[str, list[str]]:
@@ -27,6 +32,18 @@ def writers(layers: Mapping[str, Mapping[str, object]]) -> dict[str, list[str]]:
     for layer, held in layers.items():
         for name in _names(held):
             found.setdefault(name, []).append(layer)
+    return found
+
+
+def owners(layers: Mapping[str, Mapping[str, object]]) -> dict[str, list[dict[str, str]]]:
+    """Return the layer and owner of everyone who holds each thing, from the lowest."""
+    found: dict[str, list[dict[str, str]]] = {}
+    for layer, held in layers.items():
+        by = held["writers"]
+        assert isinstance(by, list)
+        for writer in by:
+            for name in _names(writer):
+                found.setdefault(name, []).append({"layer": layer, "owner": writer["owner"]})
     return found
 
 

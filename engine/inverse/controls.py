@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..channels import JAW, LIMITS
 from ..errors import InvalidValue, UnknownName
-from ..mixing import unit_key
+from ..held import unit_key
 from ..muscle import AirPressure, LidMuscle, Muscle
 from ..rig import MAX_ACTIVATION, Rig, least_activation
 from ..timeline import Keyframe

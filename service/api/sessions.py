@@ -54,7 +54,7 @@ async def one_session(
         "linear"
     ),
 ) -> dict[str, Any]:
-    """Return a session: what its layers hold and what they make together, as FACS too."""
+    """Return a session: what each writer of each layer holds, and what they make together."""
     session = await parts.sessions.get(session_id)
     view = await parts.sessions.view(session)
     return {**session.describe(), "tick": view.frame.tick, **with_facs(view.report, scale)}
@@ -68,13 +68,19 @@ async def close_session(session_id: str, parts: Parts) -> None:
 
 @router.put("/{session_id}/controls")
 async def put_controls(session_id: str, body: Controls, parts: Parts) -> dict[str, Any]:
-    """Replace everything that the layer holds."""
+    """Replace what the owner holds in the layer; without an owner, what everybody holds there.
+
+    With no controls in it, it releases them, over `fade`.
+    """
     return await _control(session_id, body, parts, replace=True)
 
 
 @router.patch("/{session_id}/controls")
 async def patch_controls(session_id: str, body: Controls, parts: Parts) -> dict[str, Any]:
-    """Move only what is named."""
+    """Move only what is named; what else the owner holds in the layer stays, for as long as said.
+
+    Of what several owners of a layer hold, the last to come counts; see `warnings` for who waits.
+    """
     return await _control(session_id, body, parts, replace=False)
 
 
