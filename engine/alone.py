@@ -16,6 +16,7 @@ from .lag import lagged
 from .lids import stand_lids
 from .skull import pose_held, pose_skull
 from .timeline import TICKS_PER_SECOND
+from .top_speed import ALONG_AN_AXIS, held_back
 
 
 class Alone:
@@ -59,10 +60,10 @@ class Alone:
 
     def _step(self, state: FaceState) -> None:
         command = state.mixer.at(state.tick)
-        state.signals = lagged(state.signals, command, self._assembly.smoothing)
+        assembly = self._assembly
+        state.signals = lagged(state.signals, command, assembly.smoothing, assembly.stride)
         carried = self._pose(state)
         skull, pull = self._forces(state)
-        assembly = self._assembly
         before = state.x.copy()
         if state.work is None:
             state.work = workspace(assembly.tissue.arrays)
@@ -80,9 +81,13 @@ class Alone:
         if carried is not None:
             held, places = carried
             state.x[:, held], state.v[:, held] = places, 0.0
-        state.speed = float(np.abs(state.x - before).max()) * TICKS_PER_SECOND
-        farthest = float(np.abs(state.x - assembly.tissue.arrays.rest).max())
-        state.lost = not farthest < self._farthest  # also true for NaN
+        farthest = float(np.abs(state.x - before).max())
+        if farthest > ALONG_AN_AXIS:
+            state.x, state.v = held_back(state.x, state.v, before)
+            farthest = float(np.abs(state.x - before).max())
+        state.speed = farthest * TICKS_PER_SECOND
+        gone = float(np.abs(state.x - assembly.tissue.arrays.rest).max())
+        state.lost = not gone < self._farthest  # also true for NaN
 
     def _pose(self, state: FaceState) -> tuple[IntArray, FloatArray] | None:
         """Turn the skull side with jaw and lids, and set out the held nodes, if those have moved.

@@ -15,6 +15,7 @@ from .dynamics import TABLEAUS, Pull
 from .errors import InvalidValue
 from .force_basis import jaw_rides, moving_pull, rest_basis
 from .muscle import LidMuscle
+from .rates import strides
 from .rig import Model, Rig
 from .sources import ENGINE_HASH
 from .stability import largest_frequency, least_substeps
@@ -39,6 +40,7 @@ class Assembly:
         lid_angles: Turn of upper and lower lid at activation 1 of each muscle, degrees,
             shape (m, 2, 2): muscle, side (left, right), lid (upper, lower).
         smoothing: Share of the way to its command that each channel goes in a tick, (channels,).
+        stride: The most that each goes in a tick, (channels,).
     """
 
     rig: Rig
@@ -51,6 +53,7 @@ class Assembly:
     omega: float
     lid_angles: FloatArray
     smoothing: FloatArray
+    stride: FloatArray
 
     @property
     def lid_shares(self) -> FloatArray:
@@ -114,6 +117,7 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
         omega=omega,
         lid_angles=_lid_angles(rig),
         smoothing=_smoothing(rig),
+        stride=strides(rig),
     )
 
 

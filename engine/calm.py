@@ -53,6 +53,6 @@ def _rests(assembly: Assembly, plan: Plan) -> bool:
     for lane, unit in enumerate(unit for unit in TRIALS if unit in rig.action_units):
         commands[lane] = rig.contraction({unit: 1.0})
     for _ in range(round(SECONDS * TICKS_PER_SECOND)):
-        bank.signals[:] = lagged(bank.signals, commands, assembly.smoothing)
+        bank.signals[:] = lagged(bank.signals, commands, assembly.smoothing, assembly.stride)
         bank.step()
     return bool(bank.speed.max() < BUZZ)

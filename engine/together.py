@@ -104,7 +104,8 @@ class Together:
         commands = bank.signals.copy()
         for lane, face in seated:
             commands[lane] = face.mixer.at(face.tick)
-        bank.signals[:] = lagged(bank.signals, commands, self._assembly.smoothing)
+        assembly = self._assembly
+        bank.signals[:] = lagged(bank.signals, commands, assembly.smoothing, assembly.stride)
         seen = bank.step()
         speed, lost = bank.speed.tolist(), bank.lost.tolist()
         for lane, face in seated:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import Float32Array, FloatArray
 from ..timeline import TICKS_PER_SECOND
+from ..top_speed import ALONG_AN_AXIS, held_back
 from .advance import advance
 from .network import NODE, Network, Order, arrange, order_columns
 from .posing import Lidding, Posing, pose, posing_of, turn_lids
@@ -160,10 +161,24 @@ class Bank:
             plan.substeps,
             1.0 / (TICKS_PER_SECOND * plan.substeps),
         )
-        fare(faces.x, self._before, plan.rest, self._farthest, self._fared)
+        self._fare()
+        self._before[:] = faces.x
         seen = np.empty((WIDTH, plan.points, 3))
         surface(faces.x, plan.following, self._jaw, self._moved, seen)
         return seen
+
+    def _fare(self) -> None:
+        """See how the faces fare, and hold back those whose tissue goes faster than it may."""
+        plan, faces = self._plan, self.faces
+        fare(faces.x, self._before, plan.rest, self._farthest, self._fared)
+        hasty = np.flatnonzero(self._fared[:WIDTH] > ALONG_AN_AXIS)
+        if not len(hasty):
+            return
+        for lane in hasty:
+            x, v, before = (_nodes(array)[:, :, lane] for array in (faces.x, faces.v, self._before))
+            slower = held_back(x.T, v.T, before.T)
+            x[:], v[:] = slower[0].T, slower[1].T
+        fare(faces.x, self._before, plan.rest, self._farthest, self._fared)
 
     def _pose(self) -> None:
         plan, signals, m = self._plan, self.signals, self._plan.muscles

@@ -111,7 +111,7 @@ def fare(
 
     Args:
         x: As in `Faces`.
-        before: Positions after the last tick, overwritten with those of this one.
+        before: Positions after the last tick.
         rest: Nodes at rest, one number for each component.
         most: mm.
         out: Overwritten.
@@ -122,7 +122,6 @@ def fare(
         here = load(x, i * WIDTH)
         way = here - load(before, i * WIDTH)
         farthest = greater(greater(way, zero - way), farthest)
-        store(before, i * WIDTH, here)
         gone = here - splat(rest[i])
         # The limit is not greater than what is no number.
         lost = lost + pick(limit, greater(gone, zero - gone), zero, one)
