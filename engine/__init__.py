@@ -86,7 +86,7 @@ from .vocabulary import (
     resolve_label,
     resolve_scores,
 )
-from .warming import kernels_are_kept, warm_kernels
+from .warming import kernels_are_kept, warm_kernels, warm_posing, warm_sweep
 from .writers import Writers
 
 __all__ = [
@@ -200,5 +200,7 @@ __all__ = [
     "unit_basis",
     "unit_key",
     "warm_kernels",
+    "warm_posing",
+    "warm_sweep",
     "whole_of",
 ]

@@ -10,10 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from .assembly import compile_rig
 from .compiling import is_kept
 from .head import head_from_mesh
+from .lanes import Bank, plan_of
 from .lanes.advance import advance
-from .rig import Rig, rig_from_head
+from .mixing import Mixer
+from .rig import Model, Rig, rig_from_head
 from .simulator import Simulator
 from .timeline import Keyframe
 from .tissue import TissueParameters
@@ -30,10 +33,38 @@ def warm_kernels(rig: Rig | None = None) -> None:
         rig: Whose face is moved for it; None takes a patch of skin, which needs no head.
     """
     rig = rig or _patch()
-    simulator = Simulator(rig, model=replace(rig.model, integrator="verlet"), threads=1)
+    simulator = Simulator(rig, model=_live(rig), threads=1)
     simulator.add("face")
     simulator.apply("face", Keyframe(action_units={"AU12": 1.0}))
     simulator.step()
+
+
+def warm_sweep() -> None:
+    """Compile or load all kernels of live faces but those of `warm_posing`, the longest first.
+
+    What takes two processes as long as each other: one does this, the other makes a head before it
+    does the rest.
+    """
+    rig = _patch()
+    bank = _bank(rig)
+    bank.advance()
+    bank.look()
+    mixer = Mixer(rig)
+    mixer.apply(Keyframe(action_units={"AU12": 1.0}), 0)
+    mixer.at(1)
+
+
+def warm_posing(rig: Rig) -> None:
+    """Compile or load the kernels that pose skull, lids and muscles of a rig."""
+    _bank(rig).pose()
+
+
+def _bank(rig: Rig) -> Bank:
+    return Bank(plan_of(compile_rig(rig, _live(rig))), farthest=np.inf)
+
+
+def _live(rig: Rig) -> Model:
+    return replace(rig.model, integrator="verlet")
 
 
 def kernels_are_kept() -> bool:

@@ -10,7 +10,7 @@ from typing import Annotated
 import structlog
 from fastapi import Depends, Request
 
-from engine import Timeline, warm_kernels
+from engine import Timeline, warm_kernels, warm_posing
 
 from .bodies import ModelChoice
 from .clips import Clips
@@ -18,7 +18,7 @@ from .commands import live_model
 from .embedded import EmbeddedRunner
 from .guard import RateLimit
 from .insight import Insight
-from .kernels import compile_kernels
+from .kernels import compile_sweep
 from .loop_delay import LoopDelay
 from .metrics import Metrics
 from .rigs import Rigs
@@ -127,24 +127,22 @@ class Components:
         """Build the first rig and compile every kernel a face needs."""
         try:
             self.stage = "building the standard rig, compiling the simulation"
-            compiling = asyncio.create_task(compile_kernels())
+            compiling = asyncio.create_task(compile_sweep())
+            surface: asyncio.Task[bytes] | None = None
             try:
                 rig = await self.rigs.get("standard")
+                surface = asyncio.create_task(self.rigs.surface(rig))
                 self.stage = "compiling the simulation"
+                await asyncio.to_thread(warm_posing, rig)
             finally:
                 await compiling
+                if surface is not None:
+                    await surface
             self.stage = "loading the simulation"
             await asyncio.to_thread(warm_kernels, rig)
-            self.stage = "writing the surface"
-            surface = asyncio.create_task(self.rigs.surface(rig))
-            try:
-                await self.runner.open(
-                    _WARM_UP, rig, Timeline((), 1.0), live_model(ModelChoice(), rig)
-                )
-                await self.runner.view(_WARM_UP)
-                await self.runner.close(_WARM_UP)
-            finally:
-                await surface
+            await self.runner.open(_WARM_UP, rig, Timeline((), 1.0), live_model(ModelChoice(), rig))
+            await self.runner.view(_WARM_UP)
+            await self.runner.close(_WARM_UP)
         except Exception as error:
             self.stage = f"failed: {error}"
             _LOG.exception("the service could not warm up")

@@ -10,11 +10,11 @@ from pathlib import Path
 import engine
 from engine import kernels_are_kept
 
-_SCRIPT = "import gc; gc.disable(); import engine; engine.warm_kernels()"
+_SCRIPT = "import gc; gc.disable(); import engine; engine.warm_sweep()"
 
 
-async def compile_kernels() -> None:
-    """Compile the kernels that were never compiled on this machine.
+async def compile_sweep() -> None:
+    """Compile the longest kernels, if they were never compiled on this machine.
 
     In a process of its own, which keeps them on disk: compiling holds the interpreter, and the
     first rig would be built after it instead of beside it.

@@ -151,16 +151,25 @@ class Bank:
         Returns:
             Displacements from rest of every lane, mm, shape (16, s, 3).
         """
-        plan, faces = self._plan, self.faces
-        self._pose()
+        self.pose()
+        self.advance()
+        return self.look()
+
+    def advance(self) -> None:
+        """Move the tissue by a tick, between skull and muscles as they are posed."""
+        plan = self._plan
         advance(
-            faces,
+            self.faces,
             plan.network,
             plan.touching,
             plan.posing,
             plan.substeps,
             1.0 / (TICKS_PER_SECOND * plan.substeps),
         )
+
+    def look(self) -> FloatArray:
+        """Note how the faces fare, and return what is seen of them, as `step` does."""
+        plan, faces = self._plan, self.faces
         self._fare()
         self._before[:] = faces.x
         seen = np.empty((WIDTH, plan.points, 3))
@@ -180,7 +189,8 @@ class Bank:
             x[:], v[:] = slower[0].T, slower[1].T
         fare(faces.x, self._before, plan.rest, self._farthest, self._fared)
 
-    def _pose(self) -> None:
+    def pose(self) -> None:
+        """Set jaw, lids and muscles to where the signals have them at the end of the tick."""
         plan, signals, m = self._plan, self.signals, self._plan.muscles
         pitch, yaw, thrust = signals[:, m], signals[:, m + 1], signals[:, m + 2]
         self._jaw.reshape(3, WIDTH)[:] = (

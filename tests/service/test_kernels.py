@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from service import kernels
-from service.kernels import compile_kernels
+from service.kernels import compile_sweep
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def test_a_process_compiles_what_is_not_kept(
     done = tmp_path / "done"
     script = f"import engine; open({str(done)!r}, 'w').write(engine.__file__)"
     monkeypatch.setattr(kernels, "_SCRIPT", script)
-    asyncio.run(compile_kernels())
+    asyncio.run(compile_sweep())
     assert done.read_text() == kernels.engine.__file__
 
 
@@ -31,7 +31,7 @@ def test_what_is_kept_takes_no_process(monkeypatch: pytest.MonkeyPatch, tmp_path
     done = tmp_path / "done"
     monkeypatch.setattr(kernels, "_SCRIPT", f"open({str(done)!r}, 'w')")
     monkeypatch.setattr(kernels, "kernels_are_kept", lambda: True)
-    asyncio.run(compile_kernels())
+    asyncio.run(compile_sweep())
     assert not done.exists()
 
 
@@ -39,7 +39,7 @@ def test_where_no_process_can_be_had_a_start_goes_on(
     never_compiled: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(kernels.sys, "executable", "/nowhere/python")
-    asyncio.run(compile_kernels())
+    asyncio.run(compile_sweep())
 
 
 def test_a_service_that_stops_takes_the_process_along(
@@ -50,7 +50,7 @@ def test_a_service_that_stops_takes_the_process_along(
     monkeypatch.setattr(kernels, "_SCRIPT", loop)
 
     async def stopped() -> None:
-        task = asyncio.create_task(compile_kernels())
+        task = asyncio.create_task(compile_sweep())
         while not mark.exists():
             await asyncio.sleep(0.02)
         task.cancel()
