@@ -35,7 +35,10 @@ _SEED = 1
 _MOST_SESSIONS = 200
 _SETTLE_SECONDS = 3.0
 """Between two sessions while the capacity is found: the smoothed cost follows within two."""
-_COMMAND_SECONDS = 0.25
+_COMMAND_SECONDS = 1.0
+"""In which every moving face gets a command, whose way takes as long: it never comes to rest."""
+_COMMANDERS = 3
+"""Who command at a time: one alone waits for each answer, and faces would sleep meanwhile."""
 _CHURN_SECONDS = 5.0
 _TURN_SECONDS = 8.0
 _CLIP_SECONDS = 30.0
@@ -85,6 +88,7 @@ class _Tally:
     Attributes:
         trips: From a command sent over HTTP to the answer with its tick [s].
         memory: Moments [s] and bytes of the service that is in memory.
+        awake: Faces that moved, at the same moments.
         failures: Answers that should not have come.
     """
 
@@ -96,6 +100,7 @@ class _Tally:
     frames: int = 0
     trips: list[float] = field(default_factory=list)
     memory: list[tuple[float, float]] = field(default_factory=list)
+    awake: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
 
 
@@ -259,11 +264,14 @@ class _Soak:
             await work()
 
     async def _storm(self) -> None:
-        """Command every moving face, one after another, each a few times a second."""
+        """Keep every moving face on its way from one expression to another."""
+        await asyncio.gather(*(self._commander(share) for share in range(_COMMANDERS)))
+
+    async def _commander(self, share: int) -> None:
         turn = 0
         while True:
             turn += 1
-            faces = [face for face in self._faces if face.moving]
+            faces = [face for face in self._faces if face.moving][share::_COMMANDERS]
             started = time.monotonic()
             for number, face in enumerate(faces):
                 units = _EXPRESSIONS[(turn + number) % len(_EXPRESSIONS)]
@@ -271,11 +279,11 @@ class _Soak:
                 due = started + _COMMAND_SECONDS * (number + 1) / len(faces)
                 await asyncio.sleep(max(0.0, due - time.monotonic()))
             if not faces:
-                await asyncio.sleep(_COMMAND_SECONDS)
+                await asyncio.sleep(_SAMPLE_SECONDS)
 
     async def _command(self, face: _Face, units: dict[str, float]) -> None:
         self._tally.commands += 1
-        body = {"action_units": units, "fade": 0.2}
+        body = {"action_units": units, "fade": _COMMAND_SECONDS}
         # Those that are watched are commanded over their socket every other time.
         if face.viewer is not None and self._chance.random() < 0.5:
             await face.viewer.send({"type": "controls", "replace": True, **body})
@@ -303,6 +311,8 @@ class _Soak:
             except (OSError, WebSocketException) as error:
                 self._tally.failures.append(f"a viewer was refused: {error}")
         self._faces.append(face)
+        if moving:
+            await self._command(face, self._chance.choice(_EXPRESSIONS))
         return True
 
     async def _close(self, face: _Face) -> None:
@@ -365,6 +375,7 @@ class _Soak:
         counts = await self._client.counts()
         memory = counts.values.get("risorius_resident_bytes", 0.0)
         self._tally.memory.append((time.monotonic(), memory))
+        self._tally.awake.append(counts.values.get("risorius_faces_awake", 0.0))
 
     def _fail(self, what: str, status: int, body: object) -> None:
         self._tally.failures.append(f"{what} was answered with {status}: {body}")
@@ -401,6 +412,7 @@ def _of_load(tally: _Tally) -> dict[str, Any]:
     slope, growth = memory_trend(tally.memory)
     resident = [size / 1e6 for _, size in tally.memory] or [0.0]
     return {
+        "awake_faces_mean": round(float(np.mean(tally.awake or [0.0])), 1),
         "round_trip_p50_ms": round(float(np.percentile(trips, 50)), 2),
         "round_trip_p99_ms": round(float(np.percentile(trips, 99)), 2),
         "commands": tally.commands,
