@@ -174,7 +174,7 @@ lookup = cast("Callable[[Float32Array, Lanes], Lanes]", _lookup)
 
 
 def part(function: Callable[..., Any]) -> Any:
-    """Compile what takes or returns lanes, for use in kernels."""
+    """Compile what takes or returns lanes, for use in kernels: called from Python it crashes."""
     if TYPE_CHECKING:
         return function
     jit: Callable[..., Any] = numba.njit  # Its annotations leave out what it takes.

@@ -8,6 +8,7 @@ on disk, they would go on as they were when the sweep changes.
 
 from __future__ import annotations
 
+import numba
 import numpy as np
 
 from engine.arrays import Float32Array, FloatArray, IntArray
@@ -15,11 +16,13 @@ from engine.dynamics import Skull, Tissue
 from engine.lanes import WIDTH
 from engine.lanes.network import Network, Order, arrange, order_columns
 from engine.lanes.sweep import Faces, sweep
-from engine.lanes.vector import aligned, load, part, splat, store
+from engine.lanes.vector import aligned, load, splat, store
 
 from .common import Blocks, Integrator, Tables, blocks_of, installed_version
 
 F = np.float32
+_entry = numba.njit(error_model="numpy")
+"""Unlike parts of a kernel, these are called from outside."""
 
 
 class LanesPeer:
@@ -132,7 +135,7 @@ class LanesPeer:
         return np.ascontiguousarray(np.swapaxes(self._layout.unpack(nodes), 1, 2))
 
 
-@part
+@_entry
 def sweep_often(
     faces: Faces,
     net: Network,
@@ -146,7 +149,7 @@ def sweep_often(
         sweep(faces, net, F(0.0), keep, gain, drift)
 
 
-@part
+@_entry
 def drift(x: Float32Array, v: Float32Array, time: np.float32) -> None:
     """Move every node as its velocity says."""
     for i in range(0, x.shape[0], WIDTH):
