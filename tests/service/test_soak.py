@@ -32,8 +32,8 @@ def test_a_short_soak_gives_every_figure(tmp_path: Path, monkeypatch: pytest.Mon
     json.dumps(figures, allow_nan=False)
     assert figures["capacity_faces"] == figures["moving_faces"] == 1
     assert figures["failures"] == []
-    # It never rests while it is commanded; those that were let go may still move a little.
-    assert 0.9 <= figures["awake_faces_mean"] <= 3.0
+    # Here it is closed and another opened every half second; one may still move beside it.
+    assert 0.0 < figures["awake_faces_mean"] <= 3.0
     for name in ("ticks", "frames_sent", "commands", "sessions_closed", "sessions_refused"):
         assert figures[name] > 0, name
     for name in ("tick", "loop_delay", "command_to_tick", "round_trip"):
