@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,6 +44,16 @@ class Clip:
     def duration(self) -> float:
         """Seconds from the first frame to the last."""
         return (len(self) - 1) / self.fps
+
+    def after(self, seconds: float) -> Clip:
+        """Return the clip without its first `seconds`, to the nearest frame; one is left."""
+        first = min(round(seconds * self.fps), len(self) - 1)
+        return replace(
+            self,
+            displacements=self.displacements[first:],
+            poses=self.poses[first:],
+            activations=self.activations[first:],
+        )
 
 
 def record(

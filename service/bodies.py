@@ -330,6 +330,11 @@ class KeyframeBody(Controls):
 
     time: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=3600)]
     replace: StrictBool = False
+    expression: StrictBool = Field(
+        default=False,
+        description="Whether its units are a whole expression, as an emotion's are: they replace "
+        "those of their owner in the layer, and cover those of others.",
+    )
     emotion: Name | EmotionCommand | None = None
 
 
@@ -346,6 +351,10 @@ class NewClip(Body):
     )
     timeline: list[KeyframeBody]
     duration: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = None
+    start: Seconds = Field(
+        default=0.0,
+        description="Seconds of the timeline that are played and left out of the file.",
+    )
     model: ModelChoice = ModelChoice()
 
 

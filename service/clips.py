@@ -233,15 +233,16 @@ class Clips:
             progress=job.simulated,
             cancelled=job.cancelled.is_set,
         )
+        rendered = rendered.after(request.start)
         simulated = time.perf_counter()
         maps = await self._rigs.textures(rig) if request.textures else {}
         size = await asyncio.get_running_loop().run_in_executor(
-            self._writers, self._write, clip, request.level, rendered, timeline, maps, job
+            self._writers, self._write, clip, request, rendered, timeline, maps, job
         )
         ended = time.perf_counter()
         return {
             "frames": len(rendered.displacements),
-            "duration": timeline.duration,
+            "duration": rendered.duration if request.start else timeline.duration,
             "bytes": size,
             "simulation_seconds": round(simulated - started, 3),
             "writing_seconds": round(ended - simulated, 3),
@@ -253,19 +254,19 @@ class Clips:
     def _write(
         self,
         clip: str,
-        level: str,
+        request: NewClip,
         rendered: Clip,
         timeline: Timeline,
         maps: Mapping[str, bytes],
         job: _Job,
     ) -> int:
         self._folder.mkdir(parents=True, exist_ok=True)
-        drawn = replace(rendered, rig=rendered.rig.at_level(level))
+        drawn = replace(rendered, rig=rendered.rig.at_level(request.level))
         data = clip_to_glb(
             drawn, textures=maps, progress=job.written, cancelled=job.cancelled.is_set
         )
         self._path(clip, "glb").write_bytes(data)
-        self._path(clip, "csv").write_text(ground_truth_csv(drawn, timeline))
+        self._path(clip, "csv").write_text(ground_truth_csv(drawn, timeline, request.start))
         return len(data)
 
     def _checked(self, clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:

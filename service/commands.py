@@ -79,9 +79,16 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
             raise refused from error
         keyframes.append(keyframe)
     try:
-        return Timeline.of(keyframes, clip.duration), warnings
+        timeline = Timeline.of(keyframes, clip.duration)
     except EngineError as error:
         raise refused_by_engine(error) from error
+    if clip.start >= timeline.duration:
+        raise Unprocessable(
+            "invalid_body",
+            f"start: the clip lasts {timeline.duration:g} s, so it must be below that; "
+            f"{clip.start:g} was given",
+        )
+    return timeline, warnings
 
 
 def model_of(choice: ModelChoice, rig: Rig) -> Model:
@@ -129,6 +136,7 @@ def _given(part: Any) -> dict[str, float]:
 
 def _clip_keyframe(body: KeyframeBody, rig: Rig, turns: Turns) -> Keyframe:
     keyframe = controls_keyframe(body, rig, replace=body.replace)
+    keyframe = replace(keyframe, expression=body.expression)
     if body.emotion is not None:
         keyframe = _with_emotion(keyframe, body, rig, turns)
     return replace(keyframe, time=body.time)

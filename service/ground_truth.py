@@ -27,15 +27,17 @@ _POSE = (
 )
 
 
-def ground_truth_csv(clip: Clip, timeline: Timeline) -> str:
+def ground_truth_csv(clip: Clip, timeline: Timeline, start: float = 0.0) -> str:
     """Return a table: frame, time [s], commanded units, activation of each muscle, pose, landmarks.
+
+    The clip begins at `start` seconds of its timeline.
 
     The 68 landmarks are numbered as trackers number them, `x_0` to `z_67`, in the head's frame
     [mm], before the head's pose.
     """
     head = clip.rig.head
     times = [index / clip.fps for index in range(len(clip.displacements))]
-    unit_names, units = commanded_units(timeline, clip.rig, times)
+    unit_names, units = commanded_units(timeline, clip.rig, [start + time for time in times])
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(

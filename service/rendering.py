@@ -62,7 +62,7 @@ def render_file(
             fps=clip.fps,
             model=model_of(clip.model, chosen),
             progress=lambda share: show("simulating", SIMULATION_SHARE * share),
-        )
+        ).after(clip.start)
         maps = None
         if textured and clip.textures:
             show("baking the textures", SIMULATION_SHARE)
@@ -82,7 +82,7 @@ def render_file(
     show("done", 1.0)
     seconds = time.perf_counter() - started
     line = (
-        f"{output}: {len(rendered.poses)} frames, {timeline.duration:g} s, "
+        f"{output}: {len(rendered.poses)} frames, {timeline.duration - clip.start:g} s, "
         f"{len(data) / 1e6:.1f} MB, in {seconds:.1f} s"
     )
     return "\n".join([line, *warnings])
