@@ -12,11 +12,13 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.middleware.cors import CORSMiddleware
 from starlette.exceptions import HTTPException
 from starlette.responses import PlainTextResponse, Response
-from starlette.routing import Match, Mount, compile_path
+from starlette.routing import Match, Mount, Route, compile_path
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
 from . import stream
+from .agents.endpoint import PATHS as MCP_PATHS
+from .agents.endpoint import McpEndpoint
 from .api import router
 from .components import Components
 from .errors import Refused, error_body, json_response
@@ -33,7 +35,7 @@ _NOT_BUILT = (
     "or `make run`, then restart; the API is at /docs.\n"
 )
 # What the viewer's files never answer, so that a wrong method there is still said to be one.
-_API_PATHS = ("/api", "/metrics", "/docs", "/openapi.json")
+_API_PATHS = ("/api", "/metrics", "/docs", "/openapi.json", "/mcp")
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -41,6 +43,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     settings = settings or Settings()
     metrics = Metrics()
     rate = RateLimit(settings.requests_per_second)
+    mcp = McpEndpoint()
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -55,6 +58,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         try:
             yield
         finally:
+            await mcp.stop()
             await parts.stop()
 
     app = FastAPI(
@@ -66,6 +70,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.include_router(router)
     app.include_router(stream.router)
+    app.router.routes += [Route(path, mcp) for path in MCP_PATHS]
     _mount_viewer(app, settings)
     _answer_errors(app)
     # The last one added is the outermost.

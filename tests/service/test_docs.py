@@ -15,6 +15,8 @@ from typer.testing import CliRunner
 
 from engine import builtin_rig, recipe_attributes
 from engine.facs import exclusions, needs
+from service.agents.tool import Tool
+from service.agents.tools import TOOLS
 from service.app import create_app
 from service.cli import app as command_line
 from service.emotion_measuring import forms
@@ -53,6 +55,12 @@ def test_every_setting_is_documented(api: str, name: str) -> None:
     meaning = Settings.model_fields[name].description
     assert meaning
     assert re.search(rf"^\| `RISORIUS_{name.upper()}` \| .+ \| {re.escape(meaning)} \|$", api, re.M)
+
+
+@pytest.mark.parametrize("tool", TOOLS, ids=lambda tool: tool.name)
+def test_every_tool_of_agents_is_documented_with_what_it_takes(api: str, tool: Tool) -> None:
+    (row,) = re.findall(rf"^\| `{tool.name}` \| (.+) \| .+ \|$", api, re.M)
+    assert {*re.findall(r"`(\w+)`", row)} >= {*tool.asks.model_fields}
 
 
 def test_every_attribute_of_a_recipe_is_documented_as_it_is(api: str) -> None:

@@ -12,7 +12,7 @@ from service.app import create_app
 from service.guard import KEY_SUBPROTOCOL, RateLimit
 
 PATHS = [*{path.replace("{", "").replace("}", ""): None for _, path in api_routes()}]
-PATHS += ["/", "/docs", "/openapi.json", "/nowhere"]
+PATHS += ["/", "/docs", "/openapi.json", "/nowhere", "/mcp", "/mcp/"]
 
 
 @pytest.mark.parametrize("path", PATHS)

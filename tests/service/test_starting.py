@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 
 import pytest
@@ -19,6 +20,11 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 
 def test_the_engine_imports_little_beside_its_libraries() -> None:
     assert import_figures(3)["ratio"] <= 1.6
+
+
+def test_a_start_does_not_import_what_only_agents_need() -> None:
+    code = "import sys, service.serving; sys.exit('mcp' in sys.modules or 'httpx2' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_a_further_face_takes_less_than_a_megabyte() -> None:
