@@ -130,9 +130,13 @@ def clip(
     textures: Annotated[
         bool, typer.Option("--textures/--no-textures", help="Embed the maps of skin and eyes.")
     ] = True,
+    url: Annotated[
+        str, typer.Option(help="Service that renders it, http://name:port; without it, here.")
+    ] = "",
+    key: Annotated[str, typer.Option(help="Key of that service.", envvar="RISORIUS_API_KEY")] = "",
 ) -> None:
-    """Render a timeline to an animated GLB file, without a server."""
-    from .rendering import ClipRefused, render_file
+    """Render a timeline to an animated GLB file, without a server or by one that runs."""
+    from .rendering import ClipRefused, render_by_service, render_file
 
     progress = Progress(
         TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn(), console=_console
@@ -140,14 +144,15 @@ def clip(
     try:
         with progress:
             task = progress.add_task("reading", total=1.0)
-            report = render_file(
-                source,
-                output,
-                rig=rig,
-                fps=fps,
-                textured=textures,
-                show=lambda stage, share: progress.update(task, description=stage, completed=share),
-            )
+
+            def show(stage: str, share: float) -> None:
+                progress.update(task, description=stage, completed=share)
+
+            asked: dict[str, Any] = {"rig": rig, "fps": fps, "textured": textures, "show": show}
+            if url:
+                report = render_by_service(source, output, url=url, key=key, **asked)
+            else:
+                report = render_file(source, output, **asked)
     except ClipRefused as refused:
         _refuse(str(refused))
     _console.print(escape(report), soft_wrap=True)

@@ -1,4 +1,4 @@
-"""Rendering a timeline file to a GLB file, for the command line."""
+"""Rendering a timeline file to a GLB file, here or by a service, for the command line."""
 
 from __future__ import annotations
 
@@ -47,8 +47,7 @@ def render_file(
     Raises:
         ClipRefused: If the file cannot be read, played or written.
     """
-    if not output.parent.is_dir():
-        raise ClipRefused(f"The folder {output.parent} does not exist; make it first.")
+    _check_folder(output)
     clip = _read(source)
     clip = clip.model_copy(update={"rig": rig or clip.rig, "fps": fps or clip.fps})
     started = time.perf_counter()
@@ -86,6 +85,60 @@ def render_file(
         f"{len(data) / 1e6:.1f} MB, in {seconds:.1f} s"
     )
     return "\n".join([line, *warnings])
+
+
+def render_by_service(
+    source: Path,
+    output: Path,
+    *,
+    url: str,
+    key: str,
+    rig: str | None,
+    fps: int | None,
+    show: Show,
+    textured: bool = True,
+) -> str:
+    """Have a running service render `source`, save its file, and return one line about it.
+
+    Args:
+        source: A timeline as `POST /api/clips` takes it.
+        output: GLB file to write.
+        url: Where the service is.
+        key: One of its keys, if it has any.
+        rig: Overrides the file's rig.
+        fps: Overrides the file's frame rate.
+        show: Told what is being done, and the share of the work done.
+        textured: Whether the file embeds the maps of skin and eyes, unless the timeline says no.
+
+    Raises:
+        ClipRefused: If the file cannot be read, played or written, or there is no such service.
+    """
+    from .client import Client, ServiceError
+
+    _check_folder(output)
+    clip = _read(source).model_dump(mode="json", exclude_unset=True)
+    clip |= {name: value for name, value in (("rig", rig), ("fps", fps)) if value is not None}
+    clip |= {} if textured else {"textures": False}
+    try:
+        with Client(url, key=key) as client:
+            show(f"rendering at {url}", 0.0)
+            report = client.save_clip(
+                clip, output, show=lambda share: show(f"rendering at {url}", share)
+            )
+    except ServiceError as error:
+        raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
+    except OSError as error:
+        raise ClipRefused(f"{output} cannot be written: {error.strerror}.") from error
+    line = (
+        f"{output}: {report['frames']} frames, {report['duration']:g} s, "
+        f"{report['bytes'] / 1e6:.1f} MB, by {url}"
+    )
+    return "\n".join([line, *report["warnings"]])
+
+
+def _check_folder(output: Path) -> None:
+    if not output.parent.is_dir():
+        raise ClipRefused(f"The folder {output.parent} does not exist; make it first.")
 
 
 def _read(source: Path) -> NewClip:

@@ -1,0 +1,320 @@
+"""A client of a running service, in plain calls: open a face, move it, read its frames, save clips.
+
+with Client("http://127.0.0.1:8000") as client, client.open_face() as face:
+tick = face.set_emotion("joy")["tick"]
+for frame in face.frames(until_still=True, since=tick):
+print(frame.tick, frame.displacements.shape)
+face.save("joy.glb")
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import httpx2
+from websockets.exceptions import InvalidStatus, WebSocketException
+from websockets.sync.client import connect
+
+from .protocol import FRAME_VERSION, KIND_SURFACE, SUBPROTOCOL, SurfaceFrame, decode_frame
+
+DEFAULT_URL = "http://127.0.0.1:8000"
+_TRIES = 4
+"""Times that a call is sent which the service puts off (429, 503)."""
+_LONGEST_PAUSE = 10.0
+_TIMEOUT_SECONDS = 120.0
+_CLIP_WAIT_SECONDS = 2.0
+_LARGEST_MESSAGE = 16_000_000
+
+
+class ServiceError(Exception):
+    """What the service refused, in its words.
+
+    Attributes:
+        status: The HTTP status; 0 if there was no answer.
+        error: The error's name: "unknown_emotion".
+        known: The names that would have been accepted, the nearest first.
+    """
+
+    def __init__(self, status: int, error: str, message: str, known: list[str]) -> None:
+        super().__init__(message)
+        self.status = status
+        self.error = error
+        self.known = known
+
+
+class Client:
+    """One service, spoken to over one connection that stays open."""
+
+    def __init__(self, url: str = DEFAULT_URL, *, key: str = "") -> None:
+        """Make a client; nothing is sent yet.
+
+        Args:
+            url: Where the service is.
+            key: One of its keys, where it has any.
+        """
+        self.url = url.rstrip("/")
+        self.headers = {"X-API-Key": key} if key else {}
+        self._http = httpx2.Client(headers=self.headers, timeout=_TIMEOUT_SECONDS)
+
+    def __enter__(self) -> Self:
+        """Use it."""
+        return self
+
+    def __exit__(
+        self,
+        _kind: type[BaseException] | None,
+        _error: BaseException | None,
+        _trace: TracebackType | None,
+    ) -> None:
+        """Close the connection."""
+        self.close()
+
+    def close(self) -> None:
+        """Close the connection; faces stay open."""
+        self._http.close()
+
+    def wait_until_ready(self, seconds: float = 300.0) -> None:
+        """Wait until faces can be opened.
+
+        Raises:
+            ServiceError: If they cannot in time.
+        """
+        deadline = time.monotonic() + seconds
+        while True:
+            try:
+                self.call("GET", "/api/ready")
+            except ServiceError as error:
+                if time.monotonic() > deadline or error.status not in (0, 503):
+                    raise
+                time.sleep(0.2)
+            else:
+                return
+
+    def open_face(self, rig: str = "standard", **model: str) -> Face:
+        """Open a face at rest; a `with` block closes it at its end.
+
+        Args:
+            rig: Whose: "standard", "amara", or the id of a rig.
+            model: Forms of the physics, such as `integrator="rk2"`.
+
+        Raises:
+            ServiceError: If there is no such rig, or no room.
+        """
+        body = {"rig": rig, **({"model": model} if model else {})}
+        return self.face(self.json("POST", "/api/sessions", body)["id"])
+
+    def face(self, session: str) -> Face:
+        """Return a face that is open already."""
+        return Face(self, session)
+
+    def save_clip(
+        self,
+        clip: Mapping[str, Any],
+        path: str | Path,
+        *,
+        show: Callable[[float], None] | None = None,
+    ) -> dict[str, Any]:
+        """Have a clip rendered, save its GLB file, and return its report.
+
+        Args:
+            clip: As `POST /api/clips` takes it: `{"timeline": [{"time": 0, "emotion": "joy"}]}`.
+            path: File to write.
+            show: Told the share of the work done.
+
+        Raises:
+            ServiceError: If it cannot be played or rendered.
+            OSError: If the file cannot be written.
+        """
+        row = self.json("POST", "/api/clips", clip)
+        address = f"/api/clips/{row['id']}"
+        while row["status"] in ("queued", "running"):
+            row = self.json("GET", f"{address}?wait={_CLIP_WAIT_SECONDS:g}")
+            if show is not None:
+                show(row["progress"])
+        if row["status"] != "done":
+            message = row.get("message") or f"the clip is {row['status']}"
+            raise ServiceError(200, f"clip_{row['status']}", message, [])
+        Path(path).write_bytes(self.call("GET", f"{address}.glb").content)
+        report: dict[str, Any] = row["report"]
+        return report
+
+    def json(self, method: str, path: str, body: object = None) -> Any:
+        """Send a request and return the JSON of its answer, None if it has none.
+
+        Raises:
+            ServiceError: If it is refused, or there is no answer.
+        """
+        answer = self.call(method, path, body)
+        return answer.json() if answer.content else None
+
+    def call(self, method: str, path: str, body: object = None) -> httpx2.Response:
+        """Send a request, again while it is put off, and return its answer.
+
+        Raises:
+            ServiceError: If it is refused, or there is no answer.
+        """
+        # By it a POST that is sent again is not done twice.
+        once = {"Idempotency-Key": secrets.token_hex(16)} if method == "POST" else {}
+        for turn in range(_TRIES):
+            try:
+                answer = self._http.request(method, self.url + path, json=body, headers=once)
+            except (httpx2.TransportError, httpx2.InvalidURL) as error:
+                raise self._unreachable(error) from error
+            put_off = answer.status_code in (429, 503) and path != "/api/ready"
+            if not put_off or turn == _TRIES - 1:
+                break
+            time.sleep(_pause(answer.headers.get("Retry-After", "")))
+        if answer.is_error:
+            raise _refused(answer.status_code, answer.content)
+        return answer
+
+    def _unreachable(self, error: Exception) -> ServiceError:
+        message = f"the service at {self.url} does not answer: {error}; is it running there?"
+        return ServiceError(0, "unreachable", message, [])
+
+
+@dataclass(frozen=True)
+class Face:
+    """One face of a service.
+
+    Attributes:
+        client: Of the service.
+        session: Its id.
+    """
+
+    client: Client
+    session: str
+
+    def __enter__(self) -> Self:
+        """Use it."""
+        return self
+
+    def __exit__(
+        self,
+        _kind: type[BaseException] | None,
+        _error: BaseException | None,
+        _trace: TracebackType | None,
+    ) -> None:
+        """Close it for good."""
+        self.close()
+
+    @property
+    def viewer_url(self) -> str:
+        """The page that shows it."""
+        return f"{self.client.url}/?session={self.session}"
+
+    def set_controls(self, *, replace: bool = False, **controls: Any) -> dict[str, Any]:
+        """Move what is named, as `PATCH …/controls`; return `tick`, `scale` and `warnings`.
+
+        Args:
+            replace: Whether to let go of everything else that the owner holds in the layer.
+            controls: `facs="6C+12D"`, `action_units={"AU12": 0.8}`, `fade=0.3`, `layer="speech"`…
+
+        Raises:
+            ServiceError: For a name or a value that cannot be used.
+        """
+        method = "PUT" if replace else "PATCH"
+        answer: dict[str, Any] = self.client.json(method, f"{self._path}/controls", controls)
+        return answer
+
+    def set_emotion(self, label: str | None = None, **emotion: Any) -> dict[str, Any]:
+        """Play an emotion; return its `recipe`, `source`, `tick` and more.
+
+        Args:
+            label: Any word for it; without it give `scores`, or `valence` and `arousal`.
+            emotion: `intensity=0.8`, `hold=1.5`, `fade_in=0.2`…
+
+        Raises:
+            ServiceError: For a word that nobody knows.
+        """
+        body = emotion if label is None else {"label": label, **emotion}
+        answer: dict[str, Any] = self.client.json("POST", f"{self._path}/emotions", body)
+        return answer
+
+    def state(self) -> dict[str, Any]:
+        """Return what its layers hold, and what they make together."""
+        answer: dict[str, Any] = self.client.json("GET", self._path)
+        return answer
+
+    def frames(self, *, until_still: bool = False, since: int = 0) -> Iterator[SurfaceFrame]:
+        """Yield each new frame; one that comes while the last one is used is left out.
+
+        A frame's `displacements` are an array [m] of shape (vertices, 3), from rest, in the order
+        of `surface.glb`.
+
+        Args:
+            until_still: Whether to end with the frame after which the face sleeps.
+            since: Tick before which frames are left out: that of a command shows what it does.
+
+        Raises:
+            ServiceError: If there is no such face, or the service ends.
+        """
+        address = f"{self.client.url.replace('http', 'ws', 1)}{self._path}/stream"
+        try:
+            with connect(
+                address,
+                subprotocols=[SUBPROTOCOL],  # type: ignore[list-item]
+                additional_headers=self.client.headers,
+                max_size=_LARGEST_MESSAGE,
+            ) as socket:
+                latest: tuple[int, bool] | None = None
+                for message in socket:
+                    if message[:2] != bytes((KIND_SURFACE, FRAME_VERSION)):
+                        continue  # Words, or of a kind that is newer than this client.
+                    frame = decode_frame(bytes(message))  # type: ignore[arg-type]
+                    news = (frame.tick, frame.asleep) != latest
+                    latest = (frame.tick, frame.asleep)
+                    if news and frame.tick >= since:
+                        yield frame
+                        if until_still and frame.asleep:
+                            return
+                    socket.send(json.dumps({"type": "ack", "tick": frame.tick}))
+        except InvalidStatus as refused:
+            response = refused.response
+            raise _refused(response.status_code, bytes(response.body or b"")) from refused
+        except WebSocketException as error:
+            raise ServiceError(0, "stream_ended", f"the stream has ended: {error}", []) from error
+        except OSError as error:
+            raise self.client._unreachable(error) from error
+
+    def save(self, path: str | Path) -> None:
+        """Save the face as it stands as a GLB file.
+
+        Raises:
+            ServiceError: If there is no such face.
+            OSError: If the file cannot be written.
+        """
+        Path(path).write_bytes(self.client.call("GET", f"{self._path}.glb").content)
+
+    def close(self) -> None:
+        """Close it for good.
+
+        Raises:
+            ServiceError: If there is no such face.
+        """
+        self.client.call("DELETE", self._path)
+
+    @property
+    def _path(self) -> str:
+        return f"/api/sessions/{self.session}"
+
+
+def _pause(retry_after: str) -> float:
+    """Return how long to wait [s]; a date, which a proxy may send, is not read."""
+    return min(_LONGEST_PAUSE, float(retry_after)) if retry_after.isdecimal() else 1.0
+
+
+def _refused(status: int, content: bytes) -> ServiceError:
+    """Return the error in an answer; a proxy's has another shape."""
+    try:
+        body = json.loads(content)
+        return ServiceError(status, body["error"], body["message"], body.get("known") or [])
+    except (ValueError, KeyError, TypeError):
+        return ServiceError(status, "unexpected_answer", f"the service answered {status}", [])
