@@ -17,13 +17,25 @@ from dataclasses import dataclass, field
 
 import structlog
 
-from engine import LONGEST_ONSET, Clip, Frame, Keyframe, Model, Rig, Simulator, Timeline, record
+from engine import (
+    LONGEST_ONSET,
+    Clip,
+    EngineError,
+    Frame,
+    Keyframe,
+    Model,
+    Rig,
+    Simulator,
+    Timeline,
+    record,
+)
 
-from .errors import NotFound
+from .errors import Busy, NotFound
 from .load import TICK_SECONDS, Load
 from .mailbox import Mailbox
 from .priority import AWAITED, background_pool
-from .runner import Cancelled, Look, Move, Progress, Tick, View
+from .runner import Cancelled, Look, Move, Played, Progress, Tick, View
+from .schedule import MOST_COMING, Schedule
 from .timing import Times
 from .writers import with_writers
 
@@ -75,6 +87,8 @@ class _Group:
         simulator: Owned by the simulation thread.
         awake: Faces that were not asleep after the last tick.
         waiting: Faces, asleep or not, whose commands let go by themselves: ticks until then.
+        schedule: Keyframes that are still to come, by `ticks`.
+        played: Those that took effect and were not told of yet.
         ticks: Ticks stepped.
     """
 
@@ -83,23 +97,38 @@ class _Group:
     simulator: Simulator
     awake: set[str] = field(default_factory=set)
     waiting: dict[str, int] = field(default_factory=dict)
+    schedule: Schedule = field(default_factory=Schedule)
+    played: list[Played] = field(default_factory=list)
     ticks: int = 0
 
     @property
     def runs(self) -> bool:
         """Whether its time goes on."""
-        return bool(self.awake or self.waiting)
+        return bool(self.awake or self.waiting) or not self.schedule.empty
 
     def step(self) -> dict[str, Frame]:
         """Advance one tick and return the frames of the faces that moved."""
+        self.play_due()
         frames = self.simulator.step()
         self.ticks += 1
         self.awake = {face for face, frame in frames.items() if not frame.asleep}
         self.waiting = {face: left - 1 for face, left in self.waiting.items() if left > 0}
         return frames
 
+    def play_due(self) -> None:
+        """Apply the keyframes whose time has come."""
+        for face, keyframe in () if self.schedule.empty else self.schedule.due(self.ticks):
+            try:
+                tick = self.simulator.apply(face, keyframe)
+            except EngineError as error:  # Others hold the layer, or the rig has been edited.
+                _LOG.warning("a keyframe was not played", session=face, reason=str(error))
+                continue
+            self.awake.add(face)
+            self.played.append(Played(face, tick, keyframe))
+
     def forget(self, face: str) -> None:
         """Take a face off the lists."""
+        self.schedule.leave(face, self.ticks)
         self.awake.discard(face)
         self.waiting.pop(face, None)
 
@@ -125,6 +154,7 @@ class EmbeddedRunner:
         self._home: dict[str, _Group] = {}
         self._pending: dict[str, Frame] = {}
         self._pending_resets: set[str] = set()
+        self._pending_played: list[Played] = []
         self._lock = threading.Lock()
         self._wake_reader: Callable[[], None] = _nothing
         self._render_pool = background_pool(render_threads, "render")
@@ -170,6 +200,10 @@ class EmbeddedRunner:
         spare = await self._spare(command.rig, model)
         return await self._mailbox.ask(lambda: self._move(session, command.rig, spare))
 
+    async def perform(self, session: str, keyframes: Sequence[Keyframe]) -> int:
+        """Play keyframes at their times from the next tick on; return that tick."""
+        return await self._mailbox.ask(lambda: self._perform(session, keyframes))
+
     async def close(self, session: str) -> None:
         """Forget the face."""
         await self._mailbox.ask(lambda: self._close(session))
@@ -198,7 +232,8 @@ class EmbeddedRunner:
                 with self._lock:
                     frames, self._pending = self._pending, {}
                     reset, self._pending_resets = frozenset(self._pending_resets), set()
-                yield Tick(frames, reset)
+                    played, self._pending_played = self._pending_played, []
+                yield Tick(frames, reset, played)
         finally:
             self._wake_reader = _nothing
 
@@ -312,6 +347,7 @@ class EmbeddedRunner:
         except Exception:
             _LOG.exception("a simulator failed; its faces go back to rest", rig=group.rig.id)
             return self._restart(group)
+        self._report_played(group)
         diverged = {face for face, frame in frames.items() if frame.diverged}
         if diverged:
             _LOG.warning("faces diverged and are back at rest", sessions=sorted(diverged))
@@ -324,6 +360,9 @@ class EmbeddedRunner:
         group.simulator = self._simulator(group.rig, group.model)
         group.awake.clear()
         group.waiting.clear()
+        group.played.clear()
+        for face in faces:
+            group.forget(face)
         for face in faces:
             group.simulator.add(face)
         self._report_reset(set(faces))
@@ -333,6 +372,12 @@ class EmbeddedRunner:
         self.counters.resets += len(faces)
         with self._lock:
             self._pending_resets |= faces
+
+    def _report_played(self, group: _Group) -> None:
+        if group.played:
+            with self._lock:
+                self._pending_played += group.played
+            group.played.clear()
 
     def _publish(self, frames: Mapping[str, Frame]) -> None:
         with self._lock:
@@ -398,12 +443,21 @@ class EmbeddedRunner:
         self.counters.waits.add(max(0.0, time.perf_counter() - asked))
         return self._apply(session, keyframe)
 
+    def _perform(self, session: str, keyframes: Sequence[Keyframe]) -> int:
+        group = self._group(session)
+        if group.schedule.coming(session) + len(keyframes) > MOST_COMING:
+            message = f"at most {MOST_COMING} keyframes wait for one face; stop a speech first"
+            raise Busy("too_much_to_come", message)
+        group.schedule.plan(session, keyframes, group.ticks)
+        return group.simulator.frame(session).tick
+
     def _move(self, session: str, rig: Rig, spare: Simulator | None) -> int:
         old = self._group(session)
         new = self._join(rig, old.model, spare)
         if new is old:
             return old.simulator.frame(session).tick
         new.simulator.add(session, state=old.simulator.remove(session))
+        new.schedule.carry_on(session, old.schedule.leave(session, old.ticks), new.ticks)
         if session in old.waiting:
             new.waiting[session] = old.waiting[session]
         self._leave(session, old)

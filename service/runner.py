@@ -6,7 +6,7 @@ everything in this process.
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -23,6 +23,15 @@ class Move:
     rig: Rig
 
 
+@dataclass(frozen=True)
+class Played:
+    """A keyframe that waited for its time, and the tick at which it took effect."""
+
+    session: str
+    tick: int
+    keyframe: Keyframe
+
+
 @dataclass(frozen=True, eq=False)
 class Tick:
     """What faces did since the last tick handed out: the newest frame of each that moved.
@@ -30,10 +39,12 @@ class Tick:
     Attributes:
         frames: Session to its newest frame.
         reset: Sessions whose numbers ran away; their faces are back at rest.
+        played: What waited for its time and took effect: session, tick and keyframe, in order.
     """
 
     frames: Mapping[str, Frame]
     reset: frozenset[str] = frozenset()
+    played: Sequence[Played] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +83,16 @@ class Runner(Protocol):
         Raises:
             NotFound: If there is no such face.
             Busy: If the simulation has stopped.
+        """
+
+    async def perform(self, session: str, keyframes: Sequence[Keyframe]) -> int:
+        """Play keyframes at their times from the next tick on; return that tick.
+
+        They take the place of what the same owners still have to come in the same layers.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped, or too much waits for the face already.
         """
 
     async def close(self, session: str) -> None:

@@ -144,6 +144,14 @@ class Session:
             for owner, names in self.held.beneath(keyframe).items()
         ]
 
+    def note(self, command: Command) -> None:
+        """Put a command into the timeline, where its tick is: it is told of a little late."""
+        self.commands.append(command)
+        if len(self.commands) > 1 and self.commands[-2].tick > command.tick:
+            in_order = sorted(self.commands, key=lambda each: each.tick)
+            self.commands.clear()
+            self.commands.extend(in_order)
+
     def hello(self, view: View) -> dict[str, object]:
         """Return the first event of a socket."""
         return {
@@ -279,6 +287,13 @@ class Sessions:
         session.unsaved = session.state_changed = True
         return tick, warnings
 
+    async def perform(self, session: Session, keyframes: Sequence[Keyframe]) -> int:
+        """Play keyframes, which fit the rig, at their times from now; return the first tick.
+
+        They take the place of what the same owners still have to come in the same layers.
+        """
+        return await self._runner.perform(session.id, keyframes)
+
     async def move(self, session: Session, rig: Rig) -> int:
         """Carry a session's face over to another rig; return the tick of it."""
         move = Move(rig)
@@ -330,6 +345,12 @@ class Sessions:
             session = self._live.get(session_id)
             if session is not None:
                 session.show(frame)
+        for played in tick.played:
+            session = self._live.get(played.session)
+            if session is not None:
+                session.note(Command(played.tick, played.keyframe))
+                session.take(played.keyframe, played.tick)
+                session.unsaved = session.state_changed = True
         for session_id in tick.reset:
             session = self._live.get(session_id)
             if session is not None:
