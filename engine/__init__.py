@@ -5,6 +5,8 @@ Eurographics 2001). A face is a rig; commands are keyframes; a simulator plays t
 """
 
 from .analysis import Analysis, UnitBasis, analyze, analyze_facs, unit_basis
+from .arkit import arkit_blend, arkit_shapes, arkit_table
+from .blend import Blend, Shape, ShapeTable, blend, split_name
 from .clip import Clip, clip_of, record
 from .combination import Combination
 from .conditions import TISSUE_AGES, plain_changes
@@ -67,6 +69,7 @@ from .separability import ALIKE, MOST_ALIKE, Separability, separability
 from .settling import settled, settled_units
 from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
+from .speech import LEAD, LETS_GO, SPEAKER, Cue, cues_of, speech_keyframes
 from .textures import texture_names, textures_of
 from .timeline import (
     ANYONE,
@@ -77,7 +80,9 @@ from .timeline import (
     Keyframe,
     Timeline,
     ticks,
+    usual_layer,
 )
+from .visemes import viseme_blend, viseme_shapes, viseme_table
 from .vocabulary import (
     Lexicon,
     Resolved,
@@ -97,6 +102,8 @@ __all__ = [
     "LANDMARKS",
     "LANDMARKS_68",
     "LAYERS",
+    "LEAD",
+    "LETS_GO",
     "LETTERS",
     "LEVELS",
     "LIPS",
@@ -109,14 +116,17 @@ __all__ = [
     "PARTED",
     "REGIONS",
     "SCALES",
+    "SPEAKER",
     "TICKS_PER_SECOND",
     "TISSUE_AGES",
     "ActionUnit",
     "AirPressure",
     "Analysis",
+    "Blend",
     "Cancelled",
     "Clip",
     "Combination",
+    "Cue",
     "Diverged",
     "Emotion",
     "EngineError",
@@ -140,6 +150,8 @@ __all__ = [
     "Response",
     "Rig",
     "Separability",
+    "Shape",
+    "ShapeTable",
     "Simulator",
     "Snapshot",
     "Term",
@@ -149,10 +161,15 @@ __all__ = [
     "Writers",
     "analyze",
     "analyze_facs",
+    "arkit_blend",
+    "arkit_shapes",
+    "arkit_table",
+    "blend",
     "broken_rules",
     "builtin_rig",
     "clip_of",
     "clip_to_glb",
+    "cues_of",
     "examine",
     "face_to_glb",
     "facs_codes",
@@ -190,6 +207,8 @@ __all__ = [
     "separability",
     "settled",
     "settled_units",
+    "speech_keyframes",
+    "split_name",
     "split_side",
     "surface_to_glb",
     "targets_to_glb",
@@ -199,6 +218,10 @@ __all__ = [
     "ticks",
     "unit_basis",
     "unit_key",
+    "usual_layer",
+    "viseme_blend",
+    "viseme_shapes",
+    "viseme_table",
     "warm_kernels",
     "warm_posing",
     "warm_sweep",

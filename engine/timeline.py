@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Any
 
-from .errors import InvalidNotation, InvalidTrack, InvalidValue, UnknownName
+from .arkit import arkit_blend
+from .blend import Blend
+from .errors import EngineError, InvalidNotation, InvalidTrack, InvalidValue, UnknownName
 from .facs import LETTERS, parse_facs, scale_named
+from .visemes import viseme_blend
 
 LAYERS = ("idle", "mood", "emotion", "speech", "puppet")
 """Layers from the lowest to the highest; a higher one overrides a lower, muscle by muscle."""
@@ -160,6 +163,14 @@ def check_owner(owner: object) -> str:
     return owner
 
 
+def usual_layer(named: Collection[str]) -> str:
+    """Return the layer of a command that names none, by the fields that it has."""
+    if "emotion" in named:
+        return "emotion"
+    moves = {*_MAPPINGS, "facs", *_SHAPES}.intersection(named)
+    return "speech" if moves == {"visemes"} else "puppet"
+
+
 def ticks(seconds: float) -> int:
     """Return the nearest whole number of ticks in `seconds`."""
     return round(seconds * TICKS_PER_SECOND)
@@ -167,7 +178,8 @@ def ticks(seconds: float) -> int:
 
 _MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head", "tongue")
 _NUMBERS = ("time", "fade_out", "weight")
-_KNOWN = {f.name for f in fields(Keyframe)} | {"facs", "scale", "fade_in"}
+_SHAPES = {"arkit": arkit_blend, "visemes": viseme_blend}
+_KNOWN = {f.name for f in fields(Keyframe)} | {"facs", "scale", "fade_in", *_SHAPES}
 
 
 def _keyframe(index: int, entry: object) -> Keyframe:
@@ -185,6 +197,9 @@ def _keyframe(index: int, entry: object) -> Keyframe:
         values[name] = _numbers(index, name, entry.get(name, _NOTHING), letters)
     if "facs" in entry:
         values["action_units"] = {**_facs(index, entry["facs"], scale), **values["action_units"]}
+    for name in _SHAPES:
+        if name in entry:
+            _add_shapes(values, _blend(index, name, entry[name]))
     for name in _NUMBERS:
         if name in entry:
             values[name] = _number(index, name, entry[name])
@@ -194,7 +209,7 @@ def _keyframe(index: int, entry: object) -> Keyframe:
     for name in ("hold", "ttl"):
         if entry.get(name) is not None:
             values[name] = _number(index, name, entry[name])
-    layer = entry.get("layer", "puppet" if "emotion" not in entry else "emotion")
+    layer = entry.get("layer", usual_layer(entry))
     if layer not in LAYERS:
         raise InvalidTrack(f"keyframe {index}: layer is {layer!r}; expected one of {LAYERS}")
     values["layer"] = layer
@@ -204,6 +219,23 @@ def _keyframe(index: int, entry: object) -> Keyframe:
     if "emotion" in entry:
         values["emotion"] = _emotion(index, entry["emotion"])
     return Keyframe(**values)
+
+
+def _blend(index: int, name: str, value: object) -> Blend:
+    try:
+        return _SHAPES[name](_numbers(index, name, value, {}))
+    except InvalidTrack:
+        raise
+    except EngineError as error:
+        raise InvalidTrack(f"keyframe {index}: {name}: {error}") from error
+
+
+def _add_shapes(values: dict[str, Any], shapes: Blend) -> None:
+    """Add what shapes of another vocabulary come to; what is named by itself counts."""
+    units: Mapping[str, float] = values["action_units"]
+    values["action_units"] = {**shapes.without(units).units, **units}
+    for group, axes in shapes.axes.items():
+        values[group] = {**axes, **values[group]}
 
 
 def _owner(index: int, value: object) -> str:

@@ -23,7 +23,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from engine import ANYONE, MAX_ACTIVATION, OWNER
+from engine import ANYONE, LEAD, LETS_GO, MAX_ACTIVATION, OWNER, SPEAKER, usual_layer
 
 from .explaining import UNKNOWN_FIELD
 
@@ -193,8 +193,19 @@ class Controls(Units, Write):
     gaze: Gaze | None = None
     head: HeadPose | None = None
     tongue: Tongue | None = None
-    arkit: dict[Name, Number] | None = Field(default=None, max_length=128)
-    visemes: dict[Name, Number] | None = Field(default=None, max_length=64)
+    arkit: dict[Name, Number] | None = Field(
+        default=None,
+        max_length=128,
+        examples=[{"jawOpen": 0.4, "mouthSmileLeft": 0.7}],
+        description="ARKit's blend shapes, 0 to 1; GET /api/maps/arkit says what each plays.",
+    )
+    visemes: dict[Name, Number] | None = Field(
+        default=None,
+        max_length=64,
+        examples=[{"aa": 0.7}],
+        description="Oculus' visemes, 0 to 1: the whole mouth, of which what they do not name is "
+        "let go. A command of visemes alone goes to the layer speech.",
+    )
     fade: Seconds | None = Field(
         default=0.0,
         description="Seconds until the commands are reached; null gives each unit its own.",
@@ -205,6 +216,12 @@ class Controls(Units, Write):
         description="idle < mood < emotion < speech < puppet: a higher one overrides a lower, "
         "muscle by muscle, where it asks for anything.",
     )
+
+    @property
+    def into(self) -> str:
+        """The layer that it goes to: the one it names, or the usual one of what it moves."""
+        named = self.model_fields_set
+        return self.layer if "layer" in named or "emotion" in named else usual_layer(named)
 
     @property
     def reached(self) -> float | None:
@@ -252,6 +269,40 @@ class EmotionCommand(Write):
         description="Seconds until it is reached; without it each unit takes its own.",
     )
     layer: LayerName = "emotion"
+
+
+class TimedViseme(Body):
+    """One viseme of a speech: when it is heard, or how long."""
+
+    viseme: Name = Field(examples=["PP"])
+    time: Seconds | None = Field(default=None, description="Seconds from the start.")
+    duration: Seconds | None = Field(default=None, description="Seconds, one after another.")
+    weight: Share = Field(default=1.0, description="How strongly it is spoken.")
+
+
+class SpeechCommand(Body):
+    """Visemes in time, played in the layer speech from now on."""
+
+    visemes: Annotated[list[TimedViseme], Field(min_length=1, max_length=10_000)] = Field(
+        examples=[[{"viseme": "PP", "time": 0.1}, {"viseme": "aa", "time": 0.2}]],
+        description="All with time, rising, or all with duration.",
+    )
+    owner: Owner = Field(
+        default=SPEAKER,
+        description="Whose speech it is; a new one of the same owner takes the place of the last.",
+    )
+    delay: Seconds = Field(
+        default=LEAD,
+        description="Seconds from now until time 0 is heard; a mouth needs as much to get ready.",
+    )
+    intensity: Share = Field(default=1.0, description="1 speaks clearly, 0.5 mumbles.")
+    weight: Share = Field(
+        default=1.0, description="How much of what lies beneath is overridden, 0 to 1."
+    )
+    ttl: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = Field(
+        default=None, description="Lease: seconds from now after which the mouth lets go."
+    )
+    fade_out: Seconds = Field(default=LETS_GO, description="Seconds over which it lets go.")
 
 
 class ModelChoice(Body):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 
 from engine import FacsWarning, Keyframe, Rig, broken_rules, unit_key, whole_of
 
-from .bodies import Units
+from .bodies import Controls, Units
 from .facs import named_units, one_key, playable
+from .shapes import shaped
 
 
 def clashes(
@@ -21,13 +23,28 @@ def clashes(
         rig: Whose units they are.
         held: What its layer holds with it, by key; without it, what the keyframe names.
     """
+    named = keyframe
+    of_shapes: tuple[FacsWarning, ...] = ()
+    if isinstance(command, Controls) and (command.arkit or command.visemes):
+        # Their tables name units and axes, not the client.
+        named, of_shapes = _itself(command, keyframe, rig), shaped(command, rig).warnings
     return [
         *playable(command, rig).warnings,
+        *of_shapes,
         *_repeated(command, rig),
-        *_sides(keyframe, rig),
-        *_overruled(keyframe, rig),
-        *_against_facs(keyframe, rig, held),
+        *_sides(named, rig),
+        *_overruled(named, rig),
+        *_against_facs(named, rig, held),
     ]
+
+
+def _itself(controls: Controls, keyframe: Keyframe, rig: Rig) -> Keyframe:
+    """Return a command without what the shapes in it come to."""
+    posed = {group: getattr(controls, group) for group in ("jaw", "gaze", "tongue")}
+    axes = {
+        group: pose.model_dump(exclude_none=True) if pose else {} for group, pose in posed.items()
+    }
+    return replace(keyframe, action_units=playable(controls, rig).units, **axes)
 
 
 def _repeated(command: Units, rig: Rig) -> Iterator[FacsWarning]:

@@ -20,6 +20,7 @@ from .clashes import clashes
 from .emotions import Turns, play_emotion
 from .errors import Unprocessable, refused_by_engine
 from .facs import playable
+from .shapes import shaped
 
 _OF_BOTH = ("layer", "owner", "weight", "hold", "ttl", "fade_out")
 """What a keyframe of a clip and the emotion in it may both say."""
@@ -32,23 +33,19 @@ def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyfram
 
     Raises:
         Unprocessable: For a FACS string that cannot be read, a unit that neither FACS nor the rig
-            has, or what is not available yet.
+            has, or a shape that its vocabulary does not have.
     """
     if {"fade", "fade_in"} <= controls.model_fields_set:
         raise Unprocessable("invalid_body", "give either 'fade' or 'fade_in': they are the same")
-    for name in ("arkit", "visemes"):
-        if getattr(controls, name) is not None:
-            raise Unprocessable(
-                "not_available", f"{name} controls are not available yet; use action_units"
-            )
+    shapes = shaped(controls, rig)
     return Keyframe(
-        layer=controls.layer,
-        action_units=playable(controls, rig).units,
+        layer=controls.into,
+        action_units={**shapes.units, **playable(controls, rig).units},
         muscles=dict(controls.muscles or {}),
-        jaw=_given(controls.jaw),
-        gaze=_given(controls.gaze),
+        jaw={**shapes.axes.get("jaw", {}), **_given(controls.jaw)},
+        gaze={**shapes.axes.get("gaze", {}), **_given(controls.gaze)},
         head=_given(controls.head),
-        tongue=_given(controls.tongue),
+        tongue={**shapes.axes.get("tongue", {}), **_given(controls.tongue)},
         owner=controls.owner,
         fade=controls.reached,
         hold=controls.hold,

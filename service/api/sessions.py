@@ -6,15 +6,24 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
 
-from engine import UnknownName, face_to_glb
+from engine import LETS_GO, SPEAKER, UnknownName, face_to_glb
 
-from ..bodies import Changes, Controls, EmotionCommand, NewSession, Scale
+from ..bodies import (
+    Changes,
+    Controls,
+    EmotionCommand,
+    NewSession,
+    Owner,
+    Scale,
+    SpeechCommand,
+)
 from ..commands import controls_keyframe, live_model
 from ..components import Components, Parts
 from ..emotions import play_emotion
 from ..errors import refused_by_engine
 from ..facs import with_facs
 from ..sessions import Session
+from ..speech import silence, spoken
 from .answers import AT_CAPACITY, GLB_CONTENT, GlbResponse, Textured
 
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
@@ -91,6 +100,36 @@ async def play(session_id: str, body: EmotionCommand, parts: Parts) -> dict[str,
     played = play_emotion(body, session.rig, session.turns)
     tick, warnings = await parts.sessions.apply(session, played.keyframe)
     return {"tick": tick, **played.describe(), "warnings": warnings}
+
+
+@router.post("/{session_id}/speech")
+async def speak(session_id: str, body: SpeechCommand, parts: Parts) -> dict[str, Any]:
+    """Play visemes in time, from now on; what the owner had still to say is dropped."""
+    session = await parts.sessions.get(session_id)
+    speech = spoken(body, session.rig)
+    tick = await parts.sessions.perform(session, speech.keyframes)
+    return {
+        "tick": tick,
+        "owner": body.owner,
+        "sound_in": body.delay,
+        "seconds": speech.seconds,
+        "keyframes": len(speech.keyframes),
+        "warnings": speech.warnings,
+    }
+
+
+@router.delete("/{session_id}/speech")
+async def be_silent(
+    session_id: str,
+    parts: Parts,
+    owner: Annotated[Owner, Query(description="Whose speech ends.")] = SPEAKER,
+    fade: Annotated[
+        float, Query(ge=0, le=3600, description="Seconds over which the mouth lets go.")
+    ] = LETS_GO,
+) -> dict[str, Any]:
+    """End a speech: what is still to come is dropped, and the mouth lets go."""
+    session = await parts.sessions.get(session_id)
+    return {"tick": await parts.sessions.perform(session, [silence(owner, fade)])}
 
 
 @router.patch("/{session_id}/tissue")

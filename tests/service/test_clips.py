@@ -94,7 +94,7 @@ def test_a_track_is_not_available_yet(client: TestClient) -> None:
         {"timeline": [{"time": -1}]},
         {"timeline": [{"action_units": {"AU12": 1}}]},
         {"timeline": [{"time": 0, "action_units": {"AU99": 1}}]},
-        {"timeline": [{"time": 0, "visemes": {"aa": 1}}]},
+        {"timeline": [{"time": 0, "visemes": {"zz": 1}}]},
         {"timeline": [{"time": 0, "emotion": "zzz"}]},
         {"timeline": [{"time": 0, "emotion": {}}]},
         {"duration": 0},

@@ -32,6 +32,8 @@ def asleep(client: TestClient, session: str) -> bool:
 def drive(client: TestClient, session: str) -> None:
     """Command a face at odd moments, over every kind of route."""
     path = f"/api/sessions/{session}"
+    words = [{"viseme": name, "duration": 0.07} for name in ("PP", "aa", "FF", "ou", "kk")]
+    client.post(f"{path}/speech", json={"visemes": words})
     client.patch(f"{path}/controls", json={"action_units": {"AU12": 1}, "fade": 0.2})
     time.sleep(0.13)
     client.post(f"{path}/emotions", json={"label": "joy", "fade_in": 0.1, "hold": 0.4})

@@ -135,14 +135,6 @@ def test_units_that_do_not_clash_are_not_warned_of(client: TestClient, session: 
     assert control(client, session, **body)["warnings"] == []
 
 
-@pytest.mark.parametrize("part", ["arkit", "visemes"])
-def test_what_is_not_available_yet_says_so(client: TestClient, session: str, part: str) -> None:
-    answer = client.patch(f"/api/sessions/{session}/controls", json={part: {"jawOpen": 0.4}})
-    assert answer.status_code == 422
-    assert answer.json()["error"] == "not_available"
-    assert part in answer.json()["message"]
-
-
 @pytest.mark.parametrize(
     "body",
     [

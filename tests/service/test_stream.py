@@ -125,7 +125,7 @@ def test_a_late_viewer_is_whole_at_once(client: TestClient, session: str) -> Non
         '{"type":"controls","action_units":{"AU12":NaN}}',
         '{"type":"controls","action_units":{"AU99":1}}',
         '{"type":"controls","action_units":{"AU12":2}}',
-        '{"type":"controls","arkit":{"jawOpen":1}}',
+        '{"type":"controls","arkit":{"jawOpn":1}}',
         '{"type":"emotion","label":"zzz"}',
         '{"type":"emotion"}',
         '{"type":"ack"}',
