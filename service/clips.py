@@ -4,27 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import secrets
-import threading
-import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import structlog
 from pydantic import ValidationError
 
-from engine import Cancelled, Clip, EngineError, Rig, Timeline, clip_to_glb
+from engine import EngineError, Rig, Timeline
 
 from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .explaining import explain
-from .ground_truth import ground_truth_csv
-from .priority import background_pool
-from .rendering import SIMULATION_SHARE
+from .render_process import Order
+from .renderer import Renderer
 from .rigs import Rigs
-from .runner import Runner
 from .store import ClipRow, Store
 
 _LOG = structlog.get_logger("clips")
@@ -37,15 +33,10 @@ class _Job:
 
     task: asyncio.Task[None] | None = None
     progress: float = 0.0
-    cancelled: threading.Event = field(default_factory=threading.Event)
 
-    def simulated(self, share: float) -> None:
-        """Take the simulation's progress; called from the rendering thread."""
-        self.progress = SIMULATION_SHARE * share
-
-    def written(self, share: float) -> None:
-        """Take the progress of the file; called from the thread that writes it."""
-        self.progress = SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share
+    def show(self, share: float) -> None:
+        """Take the share of the work that is done."""
+        self.progress = share
 
 
 class Clips:
@@ -55,10 +46,9 @@ class Clips:
         self,
         store: Store,
         rigs: Rigs,
-        runner: Runner,
         *,
         folder: Path,
-        threads: int,
+        processes: int,
         limit: int,
         queue_limit: int,
         max_seconds: float,
@@ -67,15 +57,14 @@ class Clips:
     ) -> None:
         self._store = store
         self._rigs = rigs
-        self._runner = runner
+        self._renderer = Renderer()
         self._folder = folder
         self._limit = limit
         self._queue_limit = queue_limit
         self._max_seconds = max_seconds
         self._max_keyframes = max_keyframes
         self._on_end = on_end
-        self._free = asyncio.Semaphore(threads)
-        self._writers = background_pool(threads, "clips")
+        self._free = asyncio.Semaphore(processes)
         self._jobs: dict[str, _Job] = {}
 
     def start(self) -> None:
@@ -94,11 +83,10 @@ class Clips:
         """Stop rendering; what is not done is taken up at the next start."""
         jobs = list(self._jobs.values())
         for job in jobs:
-            job.cancelled.set()
             if job.task is not None:
                 job.task.cancel()
         await asyncio.gather(*(job.task for job in jobs if job.task), return_exceptions=True)
-        await asyncio.to_thread(self._writers.shutdown, cancel_futures=True)
+        await self._renderer.stop()
 
     async def submit(self, clip: NewClip) -> ClipRow:
         """Queue a clip.
@@ -195,7 +183,6 @@ class Clips:
         self._on_end("cancelled")
         job = self._jobs.get(clip)
         if job is not None and job.task is not None:
-            job.cancelled.set()
             job.task.cancel()
             await asyncio.wait({job.task}, timeout=5.0)
 
@@ -209,65 +196,41 @@ class Clips:
             async with self._free:
                 self._store.keep_clip(clip, status="running")
                 report = await self._render(clip, request, job)
-        except Cancelled:
-            return  # `remove` or `stop` has said what is to be kept.
         except (EngineError, Refused) as error:
             self._fail(clip, str(error))
         except Exception:
             _LOG.exception("a clip could not be rendered", clip=clip)
             self._fail(clip, "the clip could not be rendered; the service's log says why")
         else:
-            if not job.cancelled.is_set():
-                self._store.keep_clip(clip, status="done", report=report)
-                self._on_end("done")
+            self._store.keep_clip(clip, status="done", report=report)
+            self._on_end("done")
 
     async def _render(self, clip: str, request: NewClip, job: _Job) -> Mapping[str, Any]:
-        started = time.perf_counter()
         rig = await self._rigs.get(request.rig)
+        root, steps = await self._rigs.made_from(request.rig)
         timeline, warnings = self._checked(request, rig)
-        rendered = await self._runner.render(
-            rig,
-            timeline,
-            request.fps,
+        textured = request.textures and bool(await self._rigs.textures(rig))
+        await asyncio.to_thread(self._folder.mkdir, parents=True, exist_ok=True)
+        order = Order(
+            root=root,
+            steps=steps,
+            timeline=timeline,
+            fps=request.fps,
             model=model_of(request.model, rig),
-            progress=job.simulated,
-            cancelled=job.cancelled.is_set,
+            start=request.start,
+            level=request.level,
+            textured=textured,
+            glb=self._path(clip, "glb"),
+            csv=self._path(clip, "csv"),
         )
-        rendered = rendered.after(request.start)
-        simulated = time.perf_counter()
-        maps = await self._rigs.textures(rig) if request.textures else {}
-        size = await asyncio.get_running_loop().run_in_executor(
-            self._writers, self._write, clip, request, rendered, timeline, maps, job
-        )
-        ended = time.perf_counter()
+        figures = await self._renderer.render(order, job.show)
+        seconds = figures["simulation_seconds"] + figures["writing_seconds"]
         return {
-            "frames": len(rendered.displacements),
-            "duration": rendered.duration if request.start else timeline.duration,
-            "bytes": size,
-            "simulation_seconds": round(simulated - started, 3),
-            "writing_seconds": round(ended - simulated, 3),
-            "times_real_time": round(timeline.duration / max(ended - started, 1e-6), 2),
+            **figures,
+            "times_real_time": round(timeline.duration / max(seconds, 1e-3), 2),
             "scales": sorted({keyframe.scale for keyframe in request.timeline}),
             "warnings": warnings,
         }
-
-    def _write(
-        self,
-        clip: str,
-        request: NewClip,
-        rendered: Clip,
-        timeline: Timeline,
-        maps: Mapping[str, bytes],
-        job: _Job,
-    ) -> int:
-        self._folder.mkdir(parents=True, exist_ok=True)
-        drawn = replace(rendered, rig=rendered.rig.at_level(request.level))
-        data = clip_to_glb(
-            drawn, textures=maps, progress=job.written, cancelled=job.cancelled.is_set
-        )
-        self._path(clip, "glb").write_bytes(data)
-        self._path(clip, "csv").write_text(ground_truth_csv(drawn, timeline, request.start))
-        return len(data)
 
     def _checked(self, clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
         if len(clip.timeline) > self._max_keyframes:

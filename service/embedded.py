@@ -1,7 +1,7 @@
 """The runner inside this process: one simulation thread owns every simulator, at a fixed 60 Hz.
 
-Rendering and building have bounded pools of their own, whose threads stand back: batch work never
-queues ahead of live ticks, nor takes a core that they want.
+Building has a bounded pool of its own, whose threads stand back: it never queues ahead of live
+ticks, nor takes a core that they want.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ import structlog
 
 from engine import (
     LONGEST_ONSET,
-    Clip,
     EngineError,
     Frame,
     Keyframe,
@@ -27,14 +26,13 @@ from engine import (
     Rig,
     Simulator,
     Timeline,
-    record,
 )
 
 from .errors import Busy, NotFound
 from .load import TICK_SECONDS, Load
 from .mailbox import Mailbox
 from .priority import AWAITED, background_pool
-from .runner import Cancelled, Look, Move, Played, Progress, Tick, View
+from .runner import Look, Move, Played, Tick, View
 from .schedule import MOST_COMING, Schedule
 from .timing import Times
 from .writers import with_writers
@@ -44,8 +42,8 @@ _LATE_SECONDS = TICK_SECONDS / 2
 """From which on a tick counts as late: its frame then misses the picture of a display at 60 Hz."""
 _SWITCH_SECONDS = 0.0005
 """How long one thread may hold the interpreter while another waits for it. A tick asks for it after
-each kernel call; beside a render, one tick in a hundred waited 12 ms for it with the default of
-5 ms, and 3 to 7 ms with this."""
+each kernel call; beside a busy thread, one tick in a hundred waited 12 ms for it with the default
+of 5 ms, and 3 to 7 ms with this."""
 _FIRST_TICKS = 3
 """Ticks of a new simulator that do not tell what a face costs: they load compiled kernels."""
 
@@ -136,14 +134,11 @@ class _Group:
 class EmbeddedRunner:
     """Every face in this process, on one simulation thread."""
 
-    def __init__(
-        self, *, simulation_threads: int = 1, render_threads: int = 1, capacity: float = 1.0
-    ) -> None:
+    def __init__(self, *, simulation_threads: int = 1, capacity: float = 1.0) -> None:
         """Make a runner; nothing runs before `start`.
 
         Args:
             simulation_threads: Live faces stepped at a time.
-            render_threads: Clips rendered at a time.
             capacity: Share of a tick that awake faces may take before new ones are refused.
         """
         self.counters = Counters()
@@ -157,7 +152,6 @@ class EmbeddedRunner:
         self._pending_played: list[Played] = []
         self._lock = threading.Lock()
         self._wake_reader: Callable[[], None] = _nothing
-        self._render_pool = background_pool(render_threads, "render")
         self._build_pool = background_pool(1, "build", steps=AWAITED)
         self._step_pool = ThreadPoolExecutor(simulation_threads, thread_name_prefix="step")
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
@@ -168,11 +162,11 @@ class EmbeddedRunner:
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop every thread; renderings that run are waited for, so cancel them first."""
+        """Stop every thread."""
         self._mailbox.stop()
         if self._thread.is_alive():
             self._thread.join()
-        for pool in (self._render_pool, self._build_pool, self._step_pool):
+        for pool in (self._build_pool, self._step_pool):
             pool.shutdown(wait=True, cancel_futures=True)
 
     @property
@@ -236,24 +230,6 @@ class EmbeddedRunner:
                 yield Tick(frames, reset, played)
         finally:
             self._wake_reader = _nothing
-
-    async def render(
-        self,
-        rig: Rig,
-        timeline: Timeline,
-        fps: int,
-        *,
-        model: Model | None = None,
-        progress: Progress | None = None,
-        cancelled: Cancelled | None = None,
-    ) -> Clip:
-        """Play a finished timeline in a simulator of its own, in the pool for rendering."""
-        return await asyncio.get_running_loop().run_in_executor(
-            self._render_pool,
-            lambda: record(
-                rig, timeline, fps=fps, model=model, progress=progress, cancelled=cancelled
-            ),
-        )
 
     async def _spare(self, rig: Rig, model: Model) -> Simulator | None:
         """Build a simulator beside the simulation thread when there is none of that kind."""

@@ -15,10 +15,9 @@ from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Refused
 from .explaining import explain
+from .render_process import SIMULATION_SHARE
 
 Show = Callable[[str, float], None]
-SIMULATION_SHARE = 0.2
-"""Share of a clip's work that is simulation; the rest is writing its file."""
 
 
 class ClipRefused(Exception):

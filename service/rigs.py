@@ -10,7 +10,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +27,6 @@ from engine import (
     builtin_rig,
     keep,
     people,
-    plain_changes,
     read_kept,
     rig_to_glb,
     surface_to_glb,
@@ -36,7 +34,8 @@ from engine import (
     textures_of,
 )
 
-from .errors import Busy, NotFound, Unprocessable, refused_by_engine
+from .deriving import Steps, derived, derived_by_steps, in_plain_changes
+from .errors import Busy, NotFound, refused_by_engine
 from .explaining import did_you_mean
 from .latest_first import LatestFirst
 from .priority import AWAITED, background_pool
@@ -54,8 +53,6 @@ _DERIVED_AT_ONCE = 16
 """Rigs that may be derived or wait for it: a new person takes a second or two."""
 _PASSING_SECONDS = 60.0
 _ID = re.compile("[0-9a-f]{16}")
-_UNIT_FIELDS = {"muscles", "jaw", "pose", "title", "region"}
-_CHANGES = ("recipe", "tissue", "muscles", "action_units", "emotions", "name")
 
 
 FULL = "high"
@@ -136,11 +133,25 @@ class Rigs:
             return await self._built_in(known)
         root, steps = await self._made_from(known)
         base = await self._built_in(root)
-        rig = await self._rigs.get(known, lambda: reduce(_derive, steps, base))
+        rig = await self._rigs.get(known, lambda: derived_by_steps(base, steps))
         if rig.id not in self._names and rig.id != known:  # It was derived by another engine.
             self._store.name_rig(rig.id, known)
             self._names[rig.id] = known
         return rig
+
+    async def made_from(self, name: str) -> tuple[str, Steps]:
+        """Return the named rig that a rig comes from, and what was changed, step by step.
+
+        Args:
+            name: As `get` takes it.
+
+        Raises:
+            NotFound: If there is none.
+        """
+        known = self._known(name) or await self._known_when_built(name)
+        if known is None:
+            raise self._unknown(name)
+        return await self._made_from(known)
 
     async def derive(
         self, base: Rig, changes: Mapping[str, Any], *, passing: bool = False
@@ -159,7 +170,7 @@ class Rigs:
             Busy: If no more rigs can be kept, or too many are being derived.
         """
         changes = {key: value for key, value in changes.items() if value is not None}
-        changes = _plain(base, changes)
+        changes = in_plain_changes(base, changes)
         # A row says how its rig comes from one that has a name, so that none depends on another
         # row, nor on the ids that this engine gives.
         root = self._known(base.id) or base.id
@@ -175,7 +186,7 @@ class Rigs:
             rig = await self.get(kept)
         else:
             with self._admitted(key):
-                rig = await self._rigs.get(key, lambda: _derive(base, changes))
+                rig = await self._rigs.get(key, lambda: derived(base, changes))
         known = self._known(rig.id)
         if known is not None:
             if not passing:
@@ -294,7 +305,7 @@ class Rigs:
                 return self._names[rig_id]
         return None
 
-    async def _made_from(self, row_id: str) -> tuple[str, list[Mapping[str, Any]]]:
+    async def _made_from(self, row_id: str) -> tuple[str, Steps]:
         """Return the named rig that a row's comes from, and what was changed, step by step.
 
         Raises:
@@ -367,35 +378,6 @@ class Rigs:
         known = [*_named(), *(row.id for row in self._store.rigs())]
         hint = did_you_mean(name, _named())
         return NotFound("unknown_rig", f"there is no rig {name!r}{hint}", known=known)
-
-
-def _derive(base: Rig, changes: Mapping[str, Any]) -> Rig:
-    """Derive a rig from what a client sent, whatever its shape."""
-    given = {key: changes.get(key) for key in _CHANGES}
-    if isinstance(given["action_units"], Mapping):
-        given["action_units"] = {n: _unit(spec) for n, spec in given["action_units"].items()}
-    try:
-        return base.derive(**given)
-    except EngineError as error:
-        raise refused_by_engine(error) from error
-    except (TypeError, ValueError, KeyError, AttributeError, ArithmeticError, IndexError) as error:
-        _LOG.warning("a rig could not be derived", error=repr(error))
-        raise Unprocessable(
-            "invalid_value", f"these changes cannot be applied to rig {base.id}: {error}"
-        ) from error
-
-
-def _plain(base: Rig, changes: Mapping[str, Any]) -> dict[str, Any]:
-    try:
-        return plain_changes(base, changes)
-    except EngineError as error:
-        raise refused_by_engine(error) from error
-
-
-def _unit(spec: Any) -> Any:
-    """Return an action unit as the engine reads it; weights by muscle alone are one too."""
-    flat = isinstance(spec, Mapping) and spec and not _UNIT_FIELDS & set(spec)
-    return {"muscles": spec} if flat else spec
 
 
 def merged_changes(earlier: Mapping[str, Any], later: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,14 +6,11 @@ everything in this process.
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from engine import Clip, Frame, Keyframe, Model, Rig, Snapshot, Timeline
-
-Progress = Callable[[float], None]
-Cancelled = Callable[[], bool]
+from engine import Frame, Keyframe, Model, Rig, Snapshot, Timeline
 
 
 @dataclass(frozen=True)
@@ -121,15 +118,3 @@ class Runner(Protocol):
 
     def ticks(self) -> AsyncIterator[Tick]:
         """Yield what moved, in batches; a slow reader gets fewer, newer frames."""
-
-    async def render(
-        self,
-        rig: Rig,
-        timeline: Timeline,
-        fps: int,
-        *,
-        model: Model | None = None,
-        progress: Progress | None = None,
-        cancelled: Cancelled | None = None,
-    ) -> Clip:
-        """Play a finished timeline in a simulator of its own."""

@@ -38,13 +38,13 @@ def rigs_in(folder: Path, *, limit: int = 100) -> Iterator[tuple[Rigs, Store]]:
 def derived(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What was derived: the heavy work."""
     calls: list[Any] = []
-    derive = service.rigs._derive
+    derive = service.rigs.derived
 
     def counted(base: Rig, changes: Any) -> Rig:
         calls.append(changes)
         return derive(base, changes)
 
-    monkeypatch.setattr(service.rigs, "_derive", counted)
+    monkeypatch.setattr(service.rigs, "derived", counted)
     return calls
 
 
@@ -80,8 +80,8 @@ def test_what_is_kept_is_given_over_the_limit_too(tmp_path: Path, changes: dict[
 
 def test_only_so_many_are_derived_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(service.rigs, "_DERIVED_AT_ONCE", 2)
-    go, derive = threading.Event(), service.rigs._derive
-    monkeypatch.setattr(service.rigs, "_derive", lambda *given: go.wait(20) and derive(*given))
+    go, derive = threading.Event(), service.rigs.derived
+    monkeypatch.setattr(service.rigs, "derived", lambda *given: go.wait(20) and derive(*given))
 
     async def scene(rigs: Rigs) -> list[Any]:
         base = await rigs.get("standard")

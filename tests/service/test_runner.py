@@ -26,7 +26,7 @@ def rig() -> Rig:
 
 @asynccontextmanager
 async def embedded() -> AsyncIterator[Runner]:
-    runner = EmbeddedRunner(simulation_threads=1, render_threads=1)
+    runner = EmbeddedRunner(simulation_threads=1)
     runner.start()
     try:
         yield runner
@@ -190,24 +190,6 @@ async def a_view_names_the_writers(runner: Runner, rig: Rig) -> None:
     assert writers["jaw.pitch"] == ["puppet"]
 
 
-async def rendering_is_reported_and_can_be_stopped(runner: Runner, rig: Rig) -> None:
-    shares: list[float] = []
-    clip = await runner.render(rig, Timeline((SMILE,), 0.2), 30, progress=shares.append)
-    assert len(clip.poses) == 7
-    assert shares == sorted(shares)
-    with pytest.raises(Exception, match="stopped"):
-        await runner.render(rig, Timeline((SMILE,), 60.0), 30, cancelled=lambda: True)
-
-
-async def rendering_does_not_stop_live_faces(runner: Runner, rig: Rig) -> None:
-    await runner.open("a", rig, NOTHING, Model.for_rig(rig))
-    rendering = asyncio.create_task(runner.render(rig, Timeline((SMILE,), 3.0), 30))
-    await runner.apply("a", SMILE)
-    await frames_until(runner, "a", lambda f: bool(np.abs(f.displacements).max() > 3))
-    assert not rendering.done()
-    await rendering
-
-
 test_a_face_does_what_a_simulator_does = contract(a_face_does_what_a_simulator_does)
 test_a_face_opens_with_its_timeline = contract(a_face_opens_with_its_timeline)
 test_a_lapse_wakes_a_sleeping_face = contract(a_command_that_lapses_lets_go_of_a_sleeping_face)
@@ -220,5 +202,3 @@ test_a_simulator_that_raises_ends_nothing = contract(a_simulator_that_raises_end
 test_a_simulation_that_ended_is_said = contract(a_simulation_that_ended_is_said)
 test_what_is_asked_late_is_answered = contract(what_is_asked_while_it_stops_is_answered)
 test_a_view_names_the_writers = contract(a_view_names_the_writers)
-test_rendering_can_be_stopped = contract(rendering_is_reported_and_can_be_stopped)
-test_rendering_does_not_stop_live_faces = contract(rendering_does_not_stop_live_faces)

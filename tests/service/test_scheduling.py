@@ -109,7 +109,7 @@ def test_late_ticks_of_live_faces_are_counted() -> None:
 
 
 @on_linux
-def test_rendering_and_building_stand_back_behind_live_faces() -> None:
+def test_building_stands_back_behind_live_faces() -> None:
     seen: dict[str, int] = {}
 
     async def body() -> None:
@@ -129,9 +129,6 @@ def test_rendering_and_building_stand_back_behind_live_faces() -> None:
         runner.start()
         rig = builtin_rig("standard")
         await runner.open("a", rig, NOTHING, Model.for_rig(rig))
-        await runner.render(
-            rig, Timeline((), 0.1), 30, progress=lambda _: seen.update(render=niceness())
-        )
         while "live" not in seen:
             await asyncio.sleep(0.01)
         await asyncio.to_thread(runner.stop)
@@ -140,7 +137,6 @@ def test_rendering_and_building_stand_back_behind_live_faces() -> None:
     most = 19 - niceness()
     assert seen["live"] == niceness()
     assert seen["build"] - seen["live"] == min(AWAITED, most)
-    assert seen["render"] - seen["live"] == min(BEHIND, most)
 
 
 @on_linux
