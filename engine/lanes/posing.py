@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
-from ..compiling import kernel
+from ..compiling import brief
 from ..dynamics import IndexArray
 from ..jaw import JawHinge
 from ..lids import stand_lids
@@ -128,7 +128,7 @@ def _flat(values: FloatArray) -> Float32Array:
     return np.ascontiguousarray(values, dtype=np.float32).reshape(-1)
 
 
-@kernel
+@brief
 def turn_lids(x: Float32Array, signals: FloatArray, lidding: Lidding, angles: Float32Array) -> None:
     """Set `angles`, radians, shape (4 x 16,), to where the lids of sixteen faces stand.
 
@@ -168,7 +168,7 @@ def turned(
     return cy * x - sy * level, cx * y - sx * z, sy * x + cy * level
 
 
-@kernel
+@brief
 def pose(
     faces: Faces,
     posing: Posing,

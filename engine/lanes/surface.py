@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray
-from ..compiling import kernel
+from ..compiling import brief
 from ..dynamics import IndexArray
 from ..head import Head
 from .network import COLUMN, Order
@@ -56,7 +56,7 @@ def following(head: Head, center: tuple[float, float, float], order: Order) -> F
     )
 
 
-@kernel
+@brief
 def surface(
     x: Float32Array, at: Following, jaw: Float32Array, moved: Float32Array, out: FloatArray
 ) -> None:
@@ -100,7 +100,7 @@ def surface(
                 out[lane, i, c] = moved[(3 * i + c) * WIDTH + lane]
 
 
-@kernel
+@brief
 def fare(
     x: Float32Array, before: Float32Array, rest: Float32Array, most: float, out: Float32Array
 ) -> None:
