@@ -209,7 +209,7 @@ class Clips:
         rig = await self._rigs.get(request.rig)
         root, steps = await self._rigs.made_from(request.rig)
         timeline, warnings = self._checked(request, rig)
-        textured = request.textures and bool(await self._rigs.textures(rig))
+        textures = await self._rigs.textures(rig) if request.textures else {}
         await asyncio.to_thread(self._folder.mkdir, parents=True, exist_ok=True)
         order = Order(
             root=root,
@@ -219,7 +219,7 @@ class Clips:
             model=model_of(request.model, rig),
             start=request.start,
             level=request.level,
-            textured=textured,
+            textures=textures,
             glb=self._path(clip, "glb"),
             csv=self._path(clip, "csv"),
         )

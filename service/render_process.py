@@ -17,7 +17,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from engine import EngineError, Model, Rig, Timeline, clip_to_glb, record, textures_of
+from engine import EngineError, Model, Rig, Timeline, clip_to_glb, record
 
 from .deriving import Steps, made_from
 from .errors import Refused
@@ -42,7 +42,7 @@ class Order:
         model: Forms of the physics.
         start: Seconds of the timeline to leave out.
         level: Of detail.
-        textured: Whether the file embeds the maps of skin and eyes.
+        textures: Maps of skin and eyes that the file embeds, by file name; none for colours.
         glb: File to write.
         csv: File for its ground truth.
     """
@@ -54,7 +54,7 @@ class Order:
     model: Model
     start: float
     level: str
-    textured: bool
+    textures: Mapping[str, bytes]
     glb: Path
     csv: Path
 
@@ -83,7 +83,7 @@ def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
     drawn = replace(clip, rig=rig.at_level(order.level))
     data = clip_to_glb(
         drawn,
-        textures=textures_of(rig) if order.textured else {},
+        textures=order.textures,
         progress=lambda share: show(SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share),
     )
     _write(order.glb, data)

@@ -34,7 +34,7 @@ def order_in(folder: Path, *, seconds: float = 0.2) -> Order:
         model=Model.for_rig(builtin_rig("standard")),
         start=0.0,
         level="low",
-        textured=False,
+        textures={},
         glb=folder / "clip.glb",
         csv=folder / "clip.csv",
     )
