@@ -21,6 +21,8 @@ RUN RISORIUS_SKIP_VIEWER=1 /opt/risorius/bin/pip install --no-cache-dir --no-dep
 
 # Stage 3: what runs. The kernels are compiled for a named processor, so that an image built on one
 # machine starts warm on another.
+# Other machines reach it, so it asks for a key: the first start makes one, prints it this once (see
+# `docker logs`) and keeps its hash in /data; `risorius keys` in the container makes others.
 FROM python:3.11-slim-bookworm
 ENV PATH=/opt/risorius/bin:$PATH \
     NUMBA_CPU_NAME=x86-64-v3 \
@@ -29,6 +31,7 @@ ENV PATH=/opt/risorius/bin:$PATH \
     RISORIUS_CACHE_DIR=/cache/risorius \
     RISORIUS_DATA_DIR=/data \
     RISORIUS_HOST=0.0.0.0 \
+    RISORIUS_MAKE_KEY=1 \
     OPENBLAS_NUM_THREADS=1
 COPY --from=build /opt/risorius /opt/risorius
 RUN mkdir -p /cache /data && chown nobody:nogroup /cache /data

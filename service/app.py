@@ -25,8 +25,10 @@ from .errors import Refused, error_body, json_response
 from .explaining import did_you_mean, explain
 from .guard import Guard, RateLimit
 from .idempotency import Idempotency
+from .keys import KeyRing
 from .metrics import CountRequests, Metrics
 from .settings import Settings
+from .tickets import Tickets
 from .version import version
 
 _LOG = structlog.get_logger("service")
@@ -43,11 +45,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     settings = settings or Settings()
     metrics = Metrics()
     rate = RateLimit(settings.requests_per_second)
+    keys, tickets = KeyRing(settings), Tickets()
     mcp = McpEndpoint()
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        parts = Components.make(settings, metrics, rate)
+        parts = Components.make(settings, metrics, rate, keys, tickets)
         metrics.watch_simulation(parts.runner.counters, parts.runner.load)
         metrics.watch_times(
             "loop_delay_seconds", "How late the event loop woke.", parts.loop_delay.times
@@ -83,7 +86,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
             allow_headers=["*"],
             expose_headers=["ETag", "Location", "Retry-After"],
         )
-    app.add_middleware(Guard, settings=settings, rate=rate)
+    app.add_middleware(Guard, settings=settings, rate=rate, keys=keys, tickets=tickets)
     app.add_middleware(CountRequests, metrics=metrics)
     return app
 
@@ -106,6 +109,8 @@ class _ViewerFiles(StaticFiles):
         response = await super().get_response(path, scope)
         response.headers["X-Content-Type-Options"] = "nosniff"
         response.headers["Content-Security-Policy"] = "frame-ancestors 'none'"
+        # The address of the page may hold a ticket.
+        response.headers["Referrer-Policy"] = "same-origin"
         fixed = path.startswith("assets/")
         response.headers["Cache-Control"] = "max-age=31536000, immutable" if fixed else "no-cache"
         return response

@@ -12,7 +12,7 @@ import json
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import structlog
 import typer
@@ -20,6 +20,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from . import key_commands
+from .terminal import console as _console
+from .terminal import refuse as _refuse
 from .version import version
 
 app = typer.Typer(
@@ -28,8 +31,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-_console = Console(stderr=True, highlight=False)
-_REFUSED = 2
+app.add_typer(key_commands.app, name="keys")
 _FAILED = 1
 
 
@@ -51,12 +53,6 @@ def _log_to_stderr() -> None:
         ],
         logger_factory=structlog.PrintLoggerFactory(sys.stderr),
     )
-
-
-def _refuse(sentence: str) -> NoReturn:
-    whole = sentence.removesuffix(".") if sentence.endswith("?.") else sentence
-    _console.print(escape(whole), style="red", soft_wrap=True)
-    raise typer.Exit(_REFUSED)
 
 
 def _show_version(wanted: bool) -> None:
@@ -88,6 +84,7 @@ def serve(
         from pydantic import ValidationError
 
         from .explaining import explain
+        from .keys import first_key, is_loopback
         from .serving import serve_until_stopped
         from .settings import Settings
         from .store import Store, StoreUnavailable
@@ -105,9 +102,19 @@ def serve(
         _refuse(f"A setting is not valid: {explain(list(error.errors()))}.")
     try:
         # Opened once beforehand: a server that fails while it starts answers with a traceback.
-        Store(settings.database).close()
+        store = Store(settings.database)
     except StoreUnavailable as unavailable:
         _refuse(str(unavailable))
+    key = first_key(store, settings)
+    has_key = bool(settings.api_keys or store.keys())
+    store.close()
+    if key is not None:
+        _console.print(f"The key of this service, shown this once: {key}", soft_wrap=True)
+    if not has_key and not is_loopback(settings.host):
+        _refuse(
+            f"Without a key risorius listens on this machine only, and {settings.host} is reached "
+            "from others: make one with `risorius keys add NAME`, or set RISORIUS_API_KEYS."
+        )
     try:
         asyncio.run(serve_until_stopped(settings, _console))
     except KeyboardInterrupt:

@@ -28,6 +28,7 @@ DEFAULT_URL = "http://127.0.0.1:8000"
 _TRIES = 4
 """Times that a call is sent which the service puts off (429, 503)."""
 _LONGEST_PAUSE = 10.0
+"""Waited for a call that is put off [s]; one that has to wait for longer is given back."""
 _TIMEOUT_SECONDS = 120.0
 _CLIP_WAIT_SECONDS = 2.0
 _LARGEST_MESSAGE = 16_000_000
@@ -168,9 +169,10 @@ class Client:
             except (httpx2.TransportError, httpx2.InvalidURL) as error:
                 raise self._unreachable(error) from error
             put_off = answer.status_code in (429, 503) and path != "/api/ready"
-            if not put_off or turn == _TRIES - 1:
+            pause = _pause(answer.headers.get("Retry-After", ""))
+            if not put_off or turn == _TRIES - 1 or pause > _LONGEST_PAUSE:
                 break
-            time.sleep(_pause(answer.headers.get("Retry-After", "")))
+            time.sleep(pause)
         if answer.is_error:
             raise _refused(answer.status_code, answer.content)
         return answer
@@ -308,7 +310,7 @@ class Face:
 
 def _pause(retry_after: str) -> float:
     """Return how long to wait [s]; a date, which a proxy may send, is not read."""
-    return min(_LONGEST_PAUSE, float(retry_after)) if retry_after.isdecimal() else 1.0
+    return float(retry_after) if retry_after.isdecimal() else 1.0
 
 
 def _refused(status: int, content: bytes) -> ServiceError:

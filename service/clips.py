@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import copy
 import secrets
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from pydantic import ValidationError
 
 from engine import EngineError, Rig, Timeline
 
+from .access import EVERYTHING, Access
 from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
@@ -40,7 +42,10 @@ class _Job:
 
 
 class Clips:
-    """Every clip of the store, and the jobs that render them."""
+    """Every clip of the store, and the jobs that render them.
+
+    `seen_by` gives them as somebody sees them, to whom those of others are not there.
+    """
 
     def __init__(
         self,
@@ -55,6 +60,7 @@ class Clips:
         max_keyframes: int,
         on_end: Callable[[str], None],
     ) -> None:
+        self._access = EVERYTHING
         self._store = store
         self._rigs = rigs
         self._renderer = Renderer()
@@ -66,6 +72,12 @@ class Clips:
         self._on_end = on_end
         self._free = asyncio.Semaphore(processes)
         self._jobs: dict[str, _Job] = {}
+
+    def seen_by(self, access: Access, rigs: Rigs) -> Clips:
+        """Return the same clips as somebody sees them, and the rigs as they see those."""
+        seen = copy.copy(self)
+        seen._access, seen._rigs = access, rigs
+        return seen
 
     def start(self) -> None:
         """Take up again what a stopped service left behind."""
@@ -94,7 +106,10 @@ class Clips:
         Raises:
             Unprocessable: If it cannot be played, or is too long.
             Busy: If the queue or the store is full.
+            Forbidden: If it is a ticket that asks.
+            QuotaExceeded: If the key asked for as much as it may.
         """
+        self._access.check_whole()
         rig = await self._rigs.get(clip.rig)
         timeline, _ = self._checked(clip, rig)
         if len(self._jobs) >= self._queue_limit:
@@ -102,18 +117,26 @@ class Clips:
         if self._store.clip_count() >= self._limit:
             message = f"{self._limit} clips are kept; delete one first"
             raise Busy("too_many_clips", message, retry_after=60)
+        if self._access.allowance is not None:
+            self._access.allowance.take_clip(timeline.duration)
         request = clip.model_copy(update={"rig": rig.id, "duration": timeline.duration})
         row = self._store.add_clip(
             secrets.token_hex(16),
             rig=rig.id,
             fps=clip.fps,
             request=request.model_dump(mode="json", exclude_unset=True),
+            made_by=self._access.maker,
         )
         self._launch(row.id, clip)
         return row
 
     async def wait(self, clip: str, seconds: float) -> ClipRow:
-        """Wait for a clip to end, `seconds` at most, and return how it stands."""
+        """Wait for a clip to end, `seconds` at most, and return how it stands.
+
+        Raises:
+            NotFound: If there is none of that id, or it is not theirs.
+        """
+        self.row(clip)  # Nobody waits for what is not there for them.
         job = self._jobs.get(clip)
         if job is not None and job.task is not None and seconds > 0:
             await asyncio.wait({job.task}, timeout=seconds)
@@ -123,16 +146,17 @@ class Clips:
         """Return a clip.
 
         Raises:
-            NotFound: If there is none of that id.
+            NotFound: If there is none of that id, or it is not theirs.
         """
         row = self._store.clip(clip)
-        if row is None:
+        if row is None or not self._access.sees(row.made_by):
             raise NotFound("unknown_clip", f"there is no clip {clip!r}")
         return row
 
     def rows(self) -> list[ClipRow]:
-        """Return every clip, oldest first."""
-        return list(self._store.clips())
+        """Return every clip that is theirs, oldest first."""
+        rows = self._store.clips(self._access.key)
+        return [row for row in rows if self._access.sees(row.made_by)]
 
     def describe(self, row: ClipRow) -> dict[str, object]:
         """Return what the API says of a clip."""

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import copy
 import gc
+import time
 from dataclasses import dataclass, field
 from typing import Annotated
 
 import structlog
-from fastapi import Depends, Request
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+from starlette.types import Scope
 
 from engine import Timeline, warm_kernels, warm_posing
 
+from .access import Access
 from .bodies import ModelChoice
 from .clips import Clips
 from .commands import live_model
@@ -19,18 +24,23 @@ from .embedded import EmbeddedRunner
 from .guard import RateLimit
 from .insight import Insight
 from .kernels import compile_sweep
+from .keys import KeyRing
 from .loop_delay import LoopDelay
 from .metrics import Metrics
+from .quotas import HOUR_SECONDS
 from .rigs import Rigs
 from .sessions import Sessions
 from .settings import Settings
 from .store import Store
+from .tickets import Tickets
 
 _LOG = structlog.get_logger("service")
 _WARM_UP = "warm-up"
 _GARBAGE = (700, 10, 1000)
 """When garbage is sought among new objects, those that stayed, and all: the last holds every thread
 for 13 ms with a hundred sessions, and finds next to nothing."""
+_KEYS_READ_SECONDS = 2.0
+"""How soon a key that is made or taken away beside a running service counts."""
 
 
 @dataclass(eq=False)
@@ -45,6 +55,8 @@ class Components:
     settings: Settings
     metrics: Metrics
     rate: RateLimit
+    keys: KeyRing
+    tickets: Tickets
     store: Store
     rigs: Rigs
     runner: EmbeddedRunner
@@ -56,11 +68,21 @@ class Components:
     stage: str = "starting"
     _warming: asyncio.Task[None] | None = None
     _garbage: tuple[int, int, int] = field(default_factory=gc.get_threshold)
+    _reading_keys: asyncio.Task[None] | None = None
 
     @classmethod
-    def make(cls, settings: Settings, metrics: Metrics, rate: RateLimit) -> Components:
+    def make(
+        cls,
+        settings: Settings,
+        metrics: Metrics,
+        rate: RateLimit,
+        keys: KeyRing,
+        tickets: Tickets,
+    ) -> Components:
         """Wire the parts; nothing runs before `start`."""
         store = Store(settings.database)
+        keys.load(store.keys())
+        keys.remember(store.clips(since=time.time() - HOUR_SECONDS))
         rigs = Rigs(
             store,
             cache_dir=settings.cache_dir / "files",
@@ -95,6 +117,8 @@ class Components:
             settings,
             metrics,
             rate,
+            keys,
+            tickets,
             store,
             rigs,
             runner,
@@ -104,18 +128,28 @@ class Components:
             LoopDelay(),
         )
 
+    def seen_by(self, access: Access) -> Components:
+        """Return these parts as somebody sees them, with the sessions, clips and rigs of theirs."""
+        seen = copy.copy(self)
+        seen.rigs = self.rigs.seen_by(access)
+        seen.sessions = self.sessions.seen_by(access, seen.rigs)
+        seen.clips = self.clips.seen_by(access, seen.rigs)
+        return seen
+
     def start(self) -> None:
         """Start the threads and tasks, and warm up beside them."""
         self.runner.start()
         self.loop_delay.start()
         self.sessions.start()
         self._warming = asyncio.create_task(self._warm_up(), name="warm-up")
+        self._reading_keys = asyncio.create_task(self._read_keys(), name="keys")
 
     async def stop(self) -> None:
         """Stop everything, and keep what is to be kept."""
-        if self._warming is not None:
-            self._warming.cancel()
-            await asyncio.gather(self._warming, return_exceptions=True)
+        for task in (self._warming, self._reading_keys):
+            if task is not None:
+                task.cancel()
+                await asyncio.gather(task, return_exceptions=True)
         await self.clips.stop()
         await self.sessions.stop()
         await self.loop_delay.stop()
@@ -125,6 +159,17 @@ class Components:
         self.store.close()
         gc.unfreeze()
         gc.set_threshold(*self._garbage)
+
+    async def _read_keys(self) -> None:
+        """Take notice of keys that are made and taken away; a busy database has its next try."""
+        while True:
+            await asyncio.sleep(_KEYS_READ_SECONDS)
+            try:
+                gone = self.keys.load(await self.store.aside(self.store.keys))
+            except Exception:
+                _LOG.exception("the keys could not be read")
+            else:
+                self.sessions.end_sockets_of(gone)
 
     async def _warm_up(self) -> None:
         """Build the first rig and compile every kernel a face needs."""
@@ -161,9 +206,26 @@ class Components:
         self.clips.start()
 
 
-def _parts(request: Request) -> Components:
-    parts: Components = request.app.state.parts
-    return parts
+async def parts_of(scope: Scope) -> Components:
+    """Return the parts as who asks sees them; every route and socket has them from here.
+
+    Raises:
+        KeyError: If the request did not come through the guard.
+        NotFound: If it names a rig, and comes with the ticket of a session that was never on it.
+    """
+    parts: Components = scope["app"].state.parts
+    access: Access = scope["risorius.access"]
+    if access.key is None and access.session is None:
+        return parts
+    seen = parts.seen_by(access)
+    rig = scope.get("path_params", {}).get("rig")
+    if rig is not None and access.session is not None:
+        await seen.sessions.check_rig(access.session, rig)
+    return seen
+
+
+async def _parts(connection: HTTPConnection) -> Components:
+    return await parts_of(connection.scope)
 
 
 Parts = Annotated[Components, Depends(_parts)]

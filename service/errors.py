@@ -1,16 +1,19 @@
 """What the service answers when it refuses: one shape, everywhere.
 
 Refused
+├── Forbidden      403  a ticket that is not for this
 ├── NotFound       404  no such session, rig, clip, …
 ├── Conflict       409  the thing is not in a state for this
 ├── Unprocessable  422  a body or a name that cannot be used
 ├── AtCapacity     429  the machine moves as many faces as it can; comes with Retry-After
+├── QuotaExceeded  429  a key has taken what it may; comes with Retry-After
 └── Busy           503  a limit is reached; comes with Retry-After
 """
 
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -46,6 +49,12 @@ class Refused(Exception):
         return error_body(self.error, self.message, known=self.known)
 
 
+class Forbidden(Refused):
+    """A ticket that is not for this."""
+
+    status = 403
+
+
 class NotFound(Refused):
     """No such session, rig, clip, muscle or route."""
 
@@ -72,6 +81,16 @@ class AtCapacity(Refused):
     def __init__(self, error: str, message: str, *, retry_after: int) -> None:
         super().__init__(error, message)
         self.headers = {"Retry-After": str(retry_after)}
+
+
+class QuotaExceeded(Refused):
+    """A key has taken what it may; it has room again after `retry_after` seconds."""
+
+    status = 429
+
+    def __init__(self, message: str, *, retry_after: float) -> None:
+        super().__init__("quota_exceeded", message)
+        self.headers = {"Retry-After": str(max(1, math.ceil(retry_after)))}
 
 
 class Busy(Refused):

@@ -8,22 +8,26 @@ name that points to this address (DNS rebinding) is not answered.
 from __future__ import annotations
 
 import re
-import secrets
 import time
 from collections import OrderedDict
-from collections.abc import Iterable
 
-from starlette.datastructures import Headers
+from starlette.datastructures import Headers, QueryParams
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from .access import Access, nothing_for
 from .errors import Refused, json_response
+from .keys import KeyRing
 from .settings import Settings
+from .tickets import PREFIX as TICKET
+from .tickets import Tickets, check_reach
 
-# A browser cannot set headers on a socket: it offers its key as a second subprotocol.
+# A browser cannot set headers on a socket: it offers its key or ticket as a second subprotocol.
 KEY_SUBPROTOCOL = "risorius.key."
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _WILDCARD = ("0.0.0.0", "::")
 _OPEN_PATHS = ("/api/health", "/api/ready")
+# All that is not a file of the viewer.
+_KEY_PATHS = ("/api", "/metrics", "/openapi.json", "/docs", "/mcp")
 _CLIENTS_REMEMBERED = 4096
 _HOST = re.compile(r"(?:\[(?P<ipv6>[0-9a-f:.]+)\]|(?P<name>[a-z0-9._-]+))(?::\d{1,5})?")
 
@@ -58,12 +62,26 @@ class RateLimit:
 
 
 class Guard:
-    """The middleware; everything behind it may trust host, origin, key and body size."""
+    """The middleware; everything behind it may trust host, origin, access and body size.
 
-    def __init__(self, app: ASGIApp, *, settings: Settings, rate: RateLimit) -> None:
+    It leaves who asks in the scope: `risorius.client`, and `risorius.access`, by which the parts of
+    the service show each caller what is theirs.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        settings: Settings,
+        rate: RateLimit,
+        keys: KeyRing,
+        tickets: Tickets,
+    ) -> None:
         self.app = app
         self.settings = settings
         self.rate = rate
+        self.keys = keys
+        self.tickets = tickets
         hosts = [*_LOOPBACK, *settings.allowed_hosts]
         if settings.host not in _WILDCARD:
             hosts.append(settings.host)
@@ -79,8 +97,8 @@ class Guard:
             self._admit(scope)
             if scope["type"] == "http":
                 receive = await self._read_body(scope, receive)
-        except Denied as denied:
-            await _turn_away(denied, scope, receive, send)
+        except Refused as refused:
+            await _turn_away(refused, scope, receive, send)
             return
         await self.app(scope, receive, send)
 
@@ -101,12 +119,16 @@ class Guard:
                     "forbidden_origin",
                     f"pages of {origin!r} may not use this service; set RISORIUS_ALLOWED_ORIGINS",
                 )
-        client = self._identify(scope, headers)
+        access = self._identify(scope, headers)
+        self._allow(access.client)
+        scope["risorius.client"] = access.client
+        scope["risorius.access"] = access
+
+    def _allow(self, client: str) -> None:
         if not self.rate.allow(client):
             denied = Denied(429, "too_many_requests", "too many requests; try again in a second")
             denied.headers["Retry-After"] = "1"
             raise denied
-        scope["risorius.client"] = client
 
     def _own_origin(self, origin: str, host: str) -> bool:
         origin = origin.lower()
@@ -114,24 +136,63 @@ class Guard:
             origin.startswith(("http://", "https://")) and origin.split("//", 1)[1] == host.lower()
         )
 
-    def _identify(self, scope: Scope, headers: Headers) -> str:
-        """Return who asks, for the rate limit: a key where keys are set, else an address."""
+    def _identify(self, scope: Scope, headers: Headers) -> Access:
+        """Return what somebody may do: by a ticket, by a key, or by being here.
+
+        Raises:
+            Denied: If a key is asked for and none is sent, or a ticket is over.
+            Forbidden: If a ticket does not lead there.
+        """
         client = scope.get("client")
         address = str(client[0]) if client else "local"
         path = str(scope["path"])
-        needs_key = path.startswith(("/api", "/metrics", "/openapi.json", "/docs", "/mcp"))
-        if not self.settings.api_keys or not needs_key or path in _OPEN_PATHS:
-            return address
+        if not path.startswith(_KEY_PATHS) or path in _OPEN_PATHS:
+            return nothing_for(address)
+        offered = _offered(headers) or _offered_ticket(scope)
+        if offered.startswith(TICKET):
+            return self._by_ticket(offered, scope, address)
+        if not self.keys.required:
+            return Access(address)
         if scope.get("method") == "OPTIONS":
-            return address  # A browser's preflight question carries no key.
-        key = _offered_key(headers)
-        if not _any_equal(key, self.settings.api_keys):
-            denied = Denied(
-                401, "unauthorized", "send a key as 'Authorization: Bearer …' or 'X-API-Key: …'"
+            return nothing_for(address)  # A browser's preflight question carries no key.
+        name = self.keys.find(offered)
+        if name is None:
+            raise self._unauthorized(
+                address, "send a key as 'Authorization: Bearer …' or 'X-API-Key: …'"
             )
-            denied.headers["WWW-Authenticate"] = "Bearer"
-            raise denied
-        return key
+        return Access(f"key {name}", name, self.keys.allowance(name))
+
+    def _by_ticket(self, offered: str, scope: Scope, address: str) -> Access:
+        ticket = self.tickets.find(offered)
+        allowance = (
+            None if ticket is None or ticket.key is None else self.keys.allowance(ticket.key)
+        )
+        # A ticket ends with its key, and one that needed none with the first key.
+        if ticket is None or (allowance is None and self.keys.required):
+            raise self._unauthorized(
+                address, "this ticket is not or no longer valid; ask for another one"
+            )
+        access = Access(
+            f"ticket {offered[-16:]}",
+            ticket.key,
+            allowance,
+            ticket.session,
+            ticket.role == "control",
+            ticket.expires,
+        )
+        check_reach(access, str(scope.get("method", "GET")), str(scope["path"]))
+        return access
+
+    def _unauthorized(self, address: str, message: str) -> Denied:
+        """Return the answer to somebody unknown, whose guesses count as requests.
+
+        Raises:
+            Denied: If there were too many.
+        """
+        self._allow(f"guesses from {address}")
+        denied = Denied(401, "unauthorized", message)
+        denied.headers["WWW-Authenticate"] = "Bearer"
+        return denied
 
     async def _read_body(self, scope: Scope, receive: Receive) -> Receive:
         """Read the whole body within the limit and return a `receive` that hands it on."""
@@ -140,6 +201,9 @@ class Guard:
         length = Headers(scope=scope).get("content-length", "0")
         if not length.isdecimal() or len(length) > 18 or int(length) > limit:
             raise too_large
+        access: Access = scope["risorius.access"]
+        if access.allowance is not None:
+            access.allowance.take_upload(int(length))
         body = bytearray()
         while True:
             message = await receive()
@@ -150,6 +214,8 @@ class Guard:
                 raise too_large
             if not message.get("more_body", False):
                 break
+        if access.allowance is not None:
+            access.allowance.take_upload(max(0, len(body) - int(length)))
         return _replay(bytes(body), receive)
 
 
@@ -173,7 +239,17 @@ def _host_name(host: str) -> str:
     return (match["ipv6"] or match["name"]) if match else ""
 
 
-def _offered_key(headers: Headers) -> str:
+def _offered_ticket(scope: Scope) -> str:
+    """Return the ticket in the address, for links and for sockets of browsers."""
+    query = scope.get("query_string", b"")
+    if b"ticket=" not in query:
+        return ""
+    ticket = QueryParams(query).get("ticket", "")
+    return ticket if ticket.startswith(TICKET) else ""
+
+
+def _offered(headers: Headers) -> str:
+    """Return the key or ticket in the headers."""
     scheme, _, token = headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
         return token.strip()
@@ -183,14 +259,8 @@ def _offered_key(headers: Headers) -> str:
     return headers.get("x-api-key", "")
 
 
-def _any_equal(key: str, keys: Iterable[str]) -> bool:
-    """Compare in constant time, with every key."""
-    offered = key.encode("utf-8", "surrogatepass")
-    return any([secrets.compare_digest(offered, other.encode()) for other in keys])
-
-
-async def _turn_away(denied: Denied, scope: Scope, receive: Receive, send: Send) -> None:
-    response = json_response(denied.body(), status=denied.status, headers=denied.headers)
+async def _turn_away(refused: Refused, scope: Scope, receive: Receive, send: Send) -> None:
+    response = json_response(refused.body(), status=refused.status, headers=refused.headers)
     if scope["type"] == "http":
         await response(scope, receive, send)
     elif "websocket.http.response" in scope.get("extensions", {}):
@@ -198,7 +268,7 @@ async def _turn_away(denied: Denied, scope: Scope, receive: Receive, send: Send)
             response.status_code, response.raw_headers, bytes(response.body), send
         )
     else:
-        await send({"type": "websocket.close", "code": 1008, "reason": denied.error})
+        await send({"type": "websocket.close", "code": 1008, "reason": refused.error})
 
 
 async def _deny_handshake(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import copy
 import hashlib
 import json
 import re
@@ -34,6 +35,7 @@ from engine import (
     textures_of,
 )
 
+from .access import EVERYTHING, Access
 from .deriving import Steps, derived, derived_by_steps, in_plain_changes
 from .errors import Busy, NotFound, refused_by_engine
 from .explaining import did_you_mean
@@ -95,9 +97,14 @@ def _named() -> tuple[str, ...]:
 
 
 class Rigs:
-    """Rigs by name or id, and the GLB files made from them."""
+    """Rigs by name or id, and the GLB files made from them.
+
+    Ids are hashes of what a rig is: who knows one may read it. `seen_by` lists to each key only the
+    derived rigs that it made.
+    """
 
     def __init__(self, store: Store, *, cache_dir: Path, cache_bytes: int, limit: int) -> None:
+        self._access = EVERYTHING
         self._store = store
         self._cache_dir = cache_dir
         self._cache_bytes = cache_bytes
@@ -111,7 +118,13 @@ class Rigs:
         self._closing = threading.Event()
         self._textures: Shelf[Mapping[str, bytes]] = Shelf(_TEXTURED_IN_MEMORY, self._bakery)
         self._names: dict[str, str] = {}
-        self._deriving = 0
+        self._deriving: list[str] = []
+
+    def seen_by(self, access: Access) -> Rigs:
+        """Return the same rigs as somebody sees them."""
+        seen = copy.copy(self)
+        seen._access = access
+        return seen
 
     def close(self) -> None:
         """Stop the pools; a bake ends with the map that it is at."""
@@ -191,10 +204,12 @@ class Rigs:
         if known is not None:
             if not passing:
                 self._store.keep_rig(known)
+            self._note_maker(known)
             return rig, False
         self._make_room()
         all_changes = _in_full(all_changes, rig.recipe)
         self._store.add_rig(rig.id, base=root, changes=all_changes, passing=passing)
+        self._note_maker(rig.id)
         self._rigs.put(rig.id, rig)
         return rig, True
 
@@ -214,7 +229,7 @@ class Rigs:
                     "title": person.title,
                 }
             )
-        for row in self._store.rigs():
+        for row in self._store.rigs(self._access.key):
             name = str(row.changes.get("name") or row.id)
             lines.append({"id": row.id, "name": name, "base": row.base})
         return lines
@@ -339,19 +354,19 @@ class Rigs:
         if key in self._rigs:
             yield
             return
-        if self._deriving >= _DERIVED_AT_ONCE:
-            message = f"{self._deriving} rigs are being derived; ask for this one again"
+        if len(self._deriving) >= _DERIVED_AT_ONCE:
+            message = f"{len(self._deriving)} rigs are being derived; ask for this one again"
             raise Busy("too_many_derivations", message, retry_after=2)
         self._make_room()
-        self._deriving += 1
+        self._deriving.append(key)
         try:
             yield
         finally:
-            self._deriving -= 1
+            self._deriving.remove(key)
 
     def _is_full(self) -> bool:
         # Those that are being derived are counted: each has been promised its place.
-        return self._store.rig_count() + self._deriving >= self._limit
+        return self._store.rig_count() + len(self._deriving) >= self._limit
 
     def _make_room(self) -> None:
         # A session's row is saved a second after it moved: what is younger may be in use.
@@ -359,6 +374,10 @@ class Rigs:
         if self._is_full() and not self._store.remove_passing_rigs(ago):
             message = f"at most {self._limit} rigs are kept; RISORIUS_MAX_RIGS allows more"
             raise Busy("too_many_rigs", message, retry_after=60)
+
+    def _note_maker(self, rig_id: str) -> None:
+        if self._access.maker and rig_id not in _named():
+            self._store.note_maker(rig_id, self._access.maker)
 
     async def _built_in(self, name: str) -> Rig:
         rig = await self._rigs.get(name, lambda: builtin_rig(name))
@@ -375,7 +394,7 @@ class Rigs:
             raise refused_by_engine(error) from error
 
     def _unknown(self, name: str) -> NotFound:
-        known = [*_named(), *(row.id for row in self._store.rigs())]
+        known = [*_named(), *(row.id for row in self._store.rigs(self._access.key))]
         hint = did_you_mean(name, _named())
         return NotFound("unknown_rig", f"there is no rig {name!r}{hint}", known=known)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import socket
 import threading
 import time
@@ -18,6 +19,7 @@ from .settings import Settings
 _SEND_BUFFER_BYTES = 65_536
 _SHUTDOWN_SECONDS = 3
 _START_SECONDS = 60.0
+_TICKET = re.compile(r"(?<=[?&]ticket=)[^&\s]+")
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -55,6 +57,8 @@ def server_of(app: FastAPI, settings: Settings) -> uvicorn.Server:
         server_header=False,
         timeout_graceful_shutdown=_SHUTDOWN_SECONDS,
     )
+    for name in ("uvicorn.error", "uvicorn.access"):
+        logging.getLogger(name).addFilter(_without_tickets)
     logging.getLogger("uvicorn.error").addFilter(_is_news)
     return uvicorn.Server(config)
 
@@ -62,6 +66,14 @@ def server_of(app: FastAPI, settings: Settings) -> uvicorn.Server:
 def _is_news(record: logging.LogRecord) -> bool:
     """Drop what uvicorn says of every socket that is refused with a status, as it should be."""
     return "without completing handshake" not in record.getMessage()
+
+
+def _without_tickets(record: logging.LogRecord) -> bool:
+    """Keep tickets, which stand in addresses, out of the log, whatever its level."""
+    message = record.getMessage()
+    if _TICKET.search(message):
+        record.msg, record.args = _TICKET.sub("…", message), ()
+    return True
 
 
 def url_of(listener: socket.socket) -> str:

@@ -17,8 +17,6 @@ from .priority import take_short_turns
 from .server import listen, server_of, url_of
 from .settings import Settings
 
-_LOOPBACK = ("127.0.0.1", "localhost", "::1")
-
 
 async def serve_until_stopped(settings: Settings, console: Console) -> None:
     """Serve until a signal comes.
@@ -34,13 +32,6 @@ async def serve_until_stopped(settings: Settings, console: Console) -> None:
     app = create_app(settings)
     server = server_of(app, settings)
     console.print(f"Risorius at {url_of(listener)}", soft_wrap=True)
-    if settings.host not in _LOOPBACK and not settings.api_keys:
-        console.print(
-            "Other machines can reach this address and no key is set: anybody may drive the faces;"
-            " set RISORIUS_API_KEYS.",
-            style="yellow",
-            soft_wrap=True,
-        )
     announcing = asyncio.create_task(_announce(app, server, console))
     try:
         await server.serve(sockets=[listener])

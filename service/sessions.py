@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import copy
 import secrets
 import time
 from collections import Counter, deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -14,10 +15,11 @@ import structlog
 
 from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline, Writers
 
+from .access import EVERYTHING, Access
 from .bodies import Units
 from .clashes import clashes
 from .commands import held_from_json, held_to_json
-from .errors import Busy, NotFound, refused_by_engine
+from .errors import Busy, NotFound, QuotaExceeded, refused_by_engine
 from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_frame
 from .rigs import Rigs
 from .runner import Look, Move, Runner, Tick, View
@@ -28,6 +30,11 @@ _LOG = structlog.get_logger("sessions")
 _COMMANDS_KEPT = 20_000
 _BEATS_PER_SECOND = 5
 _SHIFTS = 4
+_RIGS_REMEMBERED = 64
+_FORGET_SECONDS = 60
+"""How often stored sessions are looked through for those that nobody uses."""
+_VIEWER_LEAVES_SECONDS = 10
+"""When to ask again for a viewer's place: nobody knows when one leaves."""
 """Parts of the sessions that are tended in turn, so that no tick answers for all of them."""
 
 
@@ -48,6 +55,7 @@ class Session:
         rig: The rig it is on now.
         model: Its numerical model.
         created: When it was opened [s since 1970].
+        made_by: Name of the key that opened it, empty where none was asked for.
         used: When somebody last spoke to it or watched it.
         frame: Its latest frame.
         held: What each writer holds in each layer, and how long; survives a restart.
@@ -55,6 +63,7 @@ class Session:
         viewers: The sockets that watch it.
         editing: Held while a live edit derives a rig, so that edits follow each other.
         turns: How often each recipe of an emotion was played on it.
+        shown: Ids of the rigs that it was on, the last ones.
     """
 
     id: str
@@ -64,10 +73,12 @@ class Session:
     used: float
     frame: Frame
     held: Writers
+    made_by: str = ""
     commands: deque[Command] = field(default_factory=lambda: deque(maxlen=_COMMANDS_KEPT))
     viewers: set[Viewer] = field(default_factory=set)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
     turns: Counter[str] = field(default_factory=Counter)
+    shown: deque[str] = field(default_factory=lambda: deque(maxlen=_RIGS_REMEMBERED))
     unsaved: bool = False
     state_changed: bool = False
     _encoded: bytes | None = None
@@ -164,7 +175,10 @@ class Session:
 
 
 class Sessions:
-    """Every session of this process; sleeping rows of the store are woken when asked for."""
+    """Every session of this process; sleeping rows of the store are woken when asked for.
+
+    `seen_by` gives them as somebody sees them, to whom those of others are not there.
+    """
 
     def __init__(
         self,
@@ -182,9 +196,16 @@ class Sessions:
         self._limit = limit
         self._viewer_limit = viewer_limit
         self._idle_seconds = idle_seconds
+        self._access = EVERYTHING
         self._live: dict[str, Session] = {}
         self._opening = asyncio.Lock()
         self._tasks: list[asyncio.Task[None]] = []
+
+    def seen_by(self, access: Access, rigs: Rigs) -> Sessions:
+        """Return the same sessions as somebody sees and may use them, on rigs as they see those."""
+        seen = copy.copy(self)
+        seen._access, seen._rigs = access, rigs
+        return seen
 
     def start(self) -> None:
         """Start to hand frames on."""
@@ -211,7 +232,9 @@ class Sessions:
     def lines(self) -> list[dict[str, object]]:
         """Return one line for each session, oldest first."""
         lines: list[dict[str, object]] = []
-        for row in self._store.sessions():
+        for row in self._store.sessions(self._access.key):
+            if not self._access.sees(row.made_by, session=row.id):
+                continue
             session = self._live.get(row.id)
             stream = f"/api/sessions/{row.id}/stream"
             lines.append(
@@ -227,16 +250,22 @@ class Sessions:
         Raises:
             AtCapacity: If the faces that are awake take as much of a tick as they may.
             Busy: If there are as many as are allowed.
+            Forbidden: If it is a ticket that asks.
+            QuotaExceeded: If the key has as many as it may.
         """
+        self._access.check_whole()
         session_id, store = secrets.token_hex(16), self._store
         async with self._opening:
+            await self._check_quota()
             if await store.aside(store.session_count) >= self._limit:
                 message = f"at most {self._limit} sessions are open at once; close one first"
                 raise Busy("too_many_sessions", message, retry_after=10)
             await self._runner.admit()
             try:
                 row = await store.aside(
-                    lambda: store.add_session(session_id, rig=rig.id, model=asdict(model))
+                    lambda: store.add_session(
+                        session_id, rig=rig.id, model=asdict(model), made_by=self._access.maker
+                    )
                 )
                 return await self._wake(row, rig, model)
             except BaseException:
@@ -247,12 +276,14 @@ class Sessions:
         """Return a session, woken from the store if need be, which is never refused.
 
         Raises:
-            NotFound: If there is none of that id.
+            NotFound: If there is none of that id, or it is not theirs.
         """
         session = self._live.get(session_id)
         if session is None:
             async with self._opening:
                 session = self._live.get(session_id) or await self._restore(session_id)
+        if not self._access.sees(session.made_by, session=session_id):
+            raise _unknown(session_id)
         session.used = time.time()
         return session
 
@@ -260,9 +291,11 @@ class Sessions:
         """End a session for good.
 
         Raises:
-            NotFound: If there is none of that id.
+            NotFound: If there is none of that id, or it is not theirs.
+            Forbidden: If it is a ticket that asks.
         """
         session = await self.get(session_id)
+        self._access.check_whole()
         # First the row: who asks meanwhile must not wake the session from it again.
         await self._forget(session_id)
         if self._live.pop(session_id, None) is None:
@@ -276,7 +309,9 @@ class Sessions:
 
         Raises:
             Refused: If a name or a value of it does not fit the rig.
+            Forbidden: If they may only watch.
         """
+        self.check_commands()
         try:
             warnings = session.rig.check(keyframe)
             tick = await self._runner.apply(session.id, keyframe)
@@ -291,14 +326,24 @@ class Sessions:
         """Play keyframes, which fit the rig, at their times from now; return the first tick.
 
         They take the place of what the same owners still have to come in the same layers.
+
+        Raises:
+            Forbidden: If they may only watch.
         """
+        self.check_commands()
         return await self._runner.perform(session.id, keyframes)
 
     async def move(self, session: Session, rig: Rig) -> int:
-        """Carry a session's face over to another rig; return the tick of it."""
+        """Carry a session's face over to another rig; return the tick of it.
+
+        Raises:
+            Forbidden: If they may only watch.
+        """
+        self.check_commands()
         move = Move(rig)
         tick = await self._runner.apply(session.id, move)
         session.commands.append(Command(tick, move))
+        session.shown.append(session.rig.id)
         session.rig, session.held = rig, session.held.on(rig)
         self._rigs.bake(rig)
         session.unsaved = session.state_changed = True
@@ -318,13 +363,46 @@ class Sessions:
 
         Raises:
             Busy: If the session has as many as are allowed.
+            QuotaExceeded: If all sessions of the key have as many as it may.
         """
+        allowance = self._access.allowance
+        if allowance is not None:
+            most, made_by = allowance.quota.viewers, session.made_by
+            same = (each for each in self._live.values() if each.made_by == made_by)
+            if sum(len(each.viewers) for each in same) >= most:
+                message = f"at most {most} viewers watch the sessions of this key"
+                raise QuotaExceeded(message, retry_after=_VIEWER_LEAVES_SECONDS)
         if len(session.viewers) >= self._viewer_limit:
             message = f"at most {self._viewer_limit} viewers watch one session"
             raise Busy("too_many_viewers", message)
         viewer = Viewer()
         session.viewers.add(viewer)
         return viewer
+
+    def check_commands(self) -> None:
+        """Let nobody move a face who only watches.
+
+        Raises:
+            Forbidden: If they may not.
+        """
+        self._access.check_commands()
+
+    async def check_rig(self, session_id: str, rig: str) -> None:
+        """Let those through to a rig who are shown a session that is or was on it.
+
+        Raises:
+            NotFound: If it never was, or there is no such session for them.
+        """
+        session = await self.get(session_id)
+        if rig not in (session.rig.id, session.rig.name, *session.shown):
+            raise NotFound("unknown_rig", f"the session of this ticket is on no rig {rig!r}")
+
+    def end_sockets_of(self, keys: Collection[str]) -> None:
+        """Close the sockets on the sessions of keys that are no more."""
+        for session in self._live.values():
+            if session.made_by in keys:
+                for viewer in session.viewers:
+                    viewer.end(1008, "the key was taken away")
 
     def leave(self, session: Session, viewer: Viewer) -> None:
         """Forget a viewer."""
@@ -372,7 +450,7 @@ class Sessions:
             await asyncio.gather(*(self._tend(session, each_second) for session in sessions))
             if each_second:
                 await self._save_changed(sessions)
-            if turn % (60 * _BEATS_PER_SECOND * _SHIFTS) == 0:
+            if turn % (_FORGET_SECONDS * _BEATS_PER_SECOND * _SHIFTS) == 0:
                 await self._forget_sleepers()
 
     async def _forget_sleepers(self) -> None:
@@ -433,14 +511,37 @@ class Sessions:
         except NotFound:  # It was closed meanwhile.
             return session.frame.tick
 
+    async def _check_quota(self) -> None:
+        """Let a key open a session, if it has fewer than it may.
+
+        Raises:
+            QuotaExceeded: If it has not, with when the first would end by itself.
+        """
+        allowance, store = self._access.allowance, self._store
+        if allowance is None:
+            return
+        rows = await store.aside(lambda: store.sessions(self._access.maker))
+        if len(rows) >= allowance.quota.sessions:
+            message = f"this key has {len(rows)} sessions open, as many as it may; close one first"
+            ends = min(self._ends_at(row) for row in rows)
+            raise QuotaExceeded(message, retry_after=ends - time.time())
+
+    def _ends_at(self, row: SessionRow) -> float:
+        """Return when a session ends if nobody uses it any more [s since 1970]."""
+        session = self._live.get(row.id)
+        if session is None:
+            return row.used + self._idle_seconds + _FORGET_SECONDS
+        used = time.time() if session.viewers else session.used
+        return used + self._idle_seconds + 1.0
+
     async def _forget(self, session_id: str) -> None:
         store = self._store
         await store.aside(lambda: store.remove_session(session_id))
 
     async def _restore(self, session_id: str) -> Session:
         row = await self._store.aside(lambda: self._store.session(session_id))
-        if row is None:
-            raise _unknown(session_id)
+        if row is None or not self._access.sees(row.made_by, session=session_id):
+            raise _unknown(session_id)  # Before a face is woken that is not theirs.
         rig = await self._rigs.get(row.rig)
         return await self._wake(row, rig, Model.for_rig(rig, **row.model))
 
@@ -448,7 +549,10 @@ class Sessions:
         timeline = Timeline(tuple(held_from_json(row.held, rig)), duration=1.0)
         await self._runner.open(row.id, rig, timeline, model)
         view = await self._runner.view(row.id)
-        session = Session(row.id, rig, model, row.created, time.time(), view.frame, Writers(rig))
+        now, writers = time.time(), Writers(rig)
+        session = Session(
+            row.id, rig, model, row.created, now, view.frame, writers, made_by=row.made_by
+        )
         for keyframe in timeline.keyframes:
             session.commands.append(Command(view.frame.tick, keyframe))
             session.take(keyframe, view.frame.tick)

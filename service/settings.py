@@ -59,7 +59,28 @@ class Settings(BaseSettings):
         "comma separated.",
     )
     api_keys: Names = Field(
-        default=(), description="Keys, one of which every API call must carry once any is set."
+        default=(), description="Keys beside those of `risorius keys`, comma separated."
+    )
+    make_key: bool = Field(
+        default=False,
+        description="Whether a start without any key makes one, and prints it this once.",
+    )
+    key_sessions: int = Field(
+        default=64, ge=1, description="Most sessions that one key has open at once."
+    )
+    key_viewers: int = Field(
+        default=256, ge=1, description="Most sockets open at once on the sessions of one key."
+    )
+    key_clip_seconds: float = Field(
+        default=3600.0,
+        gt=0,
+        allow_inf_nan=False,
+        description="Most seconds of clips that one key asks for in an hour.",
+    )
+    key_upload_bytes: int = Field(
+        default=1_000_000_000,
+        ge=1,
+        description="Most bytes that one key sends as bodies in an hour.",
     )
     data_dir: Path = Field(
         default_factory=_data_folder, description="Folder of the database and of rendered clips."

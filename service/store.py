@@ -11,6 +11,7 @@ from typing import Any, ClassVar, TypeVar
 
 from sqlalchemy import (
     JSON,
+    BigInteger,
     Engine,
     Float,
     String,
@@ -19,13 +20,16 @@ from sqlalchemy import (
     delete,
     event,
     func,
+    inspect,
     make_url,
     select,
+    text,
     update,
 )
-from sqlalchemy.exc import ArgumentError, SQLAlchemyError
+from sqlalchemy.exc import ArgumentError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, sessionmaker
 from sqlalchemy.pool import StaticPool
+from sqlalchemy.schema import CreateColumn
 
 Row = TypeVar("Row", bound="Table")
 Answer = TypeVar("Answer")
@@ -39,6 +43,21 @@ class Table(DeclarativeBase):
     type_annotation_map: ClassVar[dict[Any, Any]] = {dict[str, Any]: JSON, list[Any]: JSON}
 
 
+class KeyRow(Table):
+    """A key: whose it is, the hash of it, and what it may take where that is not the usual."""
+
+    __tablename__ = "api_keys"
+
+    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    id: Mapped[str] = mapped_column(String(16), unique=True)
+    digest: Mapped[str] = mapped_column(String(64))
+    sessions: Mapped[int | None]
+    viewers: Mapped[int | None]
+    clip_seconds: Mapped[float | None] = mapped_column(Float)
+    upload_bytes: Mapped[int | None] = mapped_column(BigInteger)
+    created: Mapped[float] = mapped_column(Float)
+
+
 class RigRow(Table):
     """A derived rig: the name of the rig it came from and what was changed."""
 
@@ -48,6 +67,15 @@ class RigRow(Table):
     base: Mapped[str] = mapped_column(String(64))
     changes: Mapped[dict[str, Any]]
     created: Mapped[float] = mapped_column(Float)
+
+
+class RigMakerRow(Table):
+    """A key that made a derived rig: several may make the same one."""
+
+    __tablename__ = "rig_makers"
+
+    rig: Mapped[str] = mapped_column(String(64), primary_key=True)
+    made_by: Mapped[str] = mapped_column(String(64), primary_key=True)
 
 
 class PassingRigRow(Table):
@@ -78,6 +106,7 @@ class SessionRow(Table):
     held: Mapped[list[Any]]
     created: Mapped[float] = mapped_column(Float)
     used: Mapped[float] = mapped_column(Float)
+    made_by: Mapped[str] = mapped_column(String(64), default="", server_default="")
 
 
 class ClipRow(Table):
@@ -94,6 +123,7 @@ class ClipRow(Table):
     report: Mapped[dict[str, Any]]
     created: Mapped[float] = mapped_column(Float)
     finished: Mapped[float | None] = mapped_column(Float, default=None)
+    made_by: Mapped[str] = mapped_column(String(64), default="", server_default="")
 
 
 class StoreUnavailable(Exception):
@@ -112,6 +142,7 @@ class Store:
         try:
             self.engine = _connect(url)
             Table.metadata.create_all(self.engine)
+            _add_columns(self.engine)
         except (OSError, ImportError, SQLAlchemyError) as error:
             reason = getattr(error, "orig", None) or error
             raise StoreUnavailable(
@@ -136,6 +167,31 @@ class Store:
         self._thread.shutdown(wait=True)
         self.engine.dispose()
 
+    # Keys.
+
+    def add_key(
+        self, name: str, *, key_id: str, digest: str, quota: Mapping[str, float | None]
+    ) -> bool:
+        """Keep a key, and return whether there was none of that name."""
+        row = KeyRow(name=name, id=key_id, digest=digest, created=time.time(), **quota)
+        try:
+            with self._session.begin() as session:
+                session.add(row)
+        except IntegrityError:
+            return False
+        return True
+
+    def remove_key(self, name: str) -> bool:
+        """Forget a key, and return whether there was one."""
+        with self._session.begin() as session:
+            gone = session.scalars(delete(KeyRow).where(KeyRow.name == name).returning(KeyRow.id))
+            return bool(gone.all())
+
+    def keys(self) -> Sequence[KeyRow]:
+        """Return the keys, oldest first."""
+        with self._session() as session:
+            return session.scalars(select(KeyRow).order_by(KeyRow.created, KeyRow.name)).all()
+
     # Rigs.
 
     def add_rig(
@@ -147,6 +203,11 @@ class Store:
                 session.add(RigRow(id=rig, base=base, changes=dict(changes), created=time.time()))
                 if passing:
                     session.merge(PassingRigRow(id=rig))
+
+    def note_maker(self, rig: str, made_by: str) -> None:
+        """Remember that a key made a derived rig."""
+        with self._session.begin() as session:
+            session.merge(RigMakerRow(rig=rig, made_by=made_by))
 
     def keep_rig(self, rig: str) -> None:
         """Keep a rig for good, if it was a step of a live edit."""
@@ -172,6 +233,7 @@ class Store:
                 .returning(RigRow.id)
             ).all()
             session.execute(delete(PassingRigRow).where(PassingRigRow.id.in_(removed)))
+            session.execute(delete(RigMakerRow).where(RigMakerRow.rig.in_(removed)))
         return len(removed)
 
     def name_rig(self, rig: str, name: str) -> None:
@@ -193,17 +255,31 @@ class Store:
         """Return the derived rig of that id."""
         return self._get(RigRow, rig)
 
-    def rigs(self) -> Sequence[RigRow]:
-        """Return the derived rigs, oldest first."""
+    def rigs(self, made_by: str | None = None) -> Sequence[RigRow]:
+        """Return the derived rigs, or those that a key made, oldest first."""
+        rows = select(RigRow).order_by(RigRow.created)
+        if made_by is not None:
+            made = select(RigMakerRow.rig).where(RigMakerRow.made_by == made_by)
+            rows = rows.where(RigRow.id.in_(made))
         with self._session() as session:
-            return session.scalars(select(RigRow).order_by(RigRow.created)).all()
+            return session.scalars(rows).all()
 
     # Sessions.
 
-    def add_session(self, session_id: str, *, rig: str, model: Mapping[str, str]) -> SessionRow:
-        """Keep a new session."""
+    def add_session(
+        self, session_id: str, *, rig: str, model: Mapping[str, str], made_by: str = ""
+    ) -> SessionRow:
+        """Keep a new session of a key."""
         now = time.time()
-        row = SessionRow(id=session_id, rig=rig, model=dict(model), held=[], created=now, used=now)
+        row = SessionRow(
+            id=session_id,
+            rig=rig,
+            model=dict(model),
+            held=[],
+            created=now,
+            used=now,
+            made_by=made_by,
+        )
         with self._session.begin() as session:
             session.add(row)
         return row
@@ -241,15 +317,20 @@ class Store:
         with self._session() as session:
             return session.scalar(select(func.count()).select_from(SessionRow)) or 0
 
-    def sessions(self) -> Sequence[SessionRow]:
-        """Return the sessions, oldest first."""
+    def sessions(self, made_by: str | None = None) -> Sequence[SessionRow]:
+        """Return the sessions, or those of a key, oldest first."""
+        rows = select(SessionRow).order_by(SessionRow.created)
+        if made_by is not None:
+            rows = rows.where(SessionRow.made_by == made_by)
         with self._session() as session:
-            return session.scalars(select(SessionRow).order_by(SessionRow.created)).all()
+            return session.scalars(rows).all()
 
     # Clips.
 
-    def add_clip(self, clip: str, *, rig: str, fps: int, request: Mapping[str, Any]) -> ClipRow:
-        """Keep a clip that waits to be rendered."""
+    def add_clip(
+        self, clip: str, *, rig: str, fps: int, request: Mapping[str, Any], made_by: str = ""
+    ) -> ClipRow:
+        """Keep a clip of a key that waits to be rendered."""
         row = ClipRow(
             id=clip,
             rig=rig,
@@ -259,6 +340,7 @@ class Store:
             message="",
             report={},
             created=time.time(),
+            made_by=made_by,
         )
         with self._session.begin() as session:
             session.add(row)
@@ -290,10 +372,14 @@ class Store:
         """Return the clip of that id."""
         return self._get(ClipRow, clip)
 
-    def clips(self) -> Sequence[ClipRow]:
-        """Return the clips, oldest first."""
+    def clips(self, made_by: str | None = None, since: float = 0.0) -> Sequence[ClipRow]:
+        """Return the clips, or those of a key, made since a time [s since 1970], oldest first."""
+        rows = select(ClipRow).where(ClipRow.created >= since)
+        rows = rows.order_by(ClipRow.created, ClipRow.id)
+        if made_by is not None:
+            rows = rows.where(ClipRow.made_by == made_by)
         with self._session() as session:
-            return session.scalars(select(ClipRow).order_by(ClipRow.created, ClipRow.id)).all()
+            return session.scalars(rows).all()
 
     def clip_count(self) -> int:
         """Return how many clips are kept."""
@@ -303,6 +389,18 @@ class Store:
     def _get(self, table: type[Row], key: str) -> Row | None:
         with self._session() as session:
             return session.get(table, key)
+
+
+def _add_columns(engine: Engine) -> None:
+    """Give the tables of an earlier version the columns that they lack; each has a default."""
+    present = inspect(engine)
+    with engine.begin() as connection:
+        for table in Table.metadata.sorted_tables:
+            names = {column["name"] for column in present.get_columns(table.name)}
+            for column in table.columns:
+                if column.name not in names:
+                    written = CreateColumn(column).compile(dialect=engine.dialect)
+                    connection.execute(text(f"ALTER TABLE {table.name} ADD COLUMN {written}"))
 
 
 def _without_password(url: str) -> str:

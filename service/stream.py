@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import time
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
@@ -12,9 +14,10 @@ from fastapi import APIRouter, WebSocket
 from pydantic import ValidationError
 from starlette.websockets import WebSocketDisconnect
 
+from .access import Access
 from .bodies import MESSAGE, AckMessage, ControlsMessage
 from .commands import controls_keyframe
-from .components import Components
+from .components import Components, parts_of
 from .emotions import play_emotion
 from .errors import Refused, error_body, json_response
 from .explaining import explain
@@ -25,13 +28,13 @@ from .viewers import Viewer
 
 router = APIRouter()
 _PROTOCOL_ERROR = 1002
+_NOT_ALLOWED = 1008
 _TOO_BIG = 1009
 
 
 @router.websocket("/api/sessions/{session_id}/stream")
 async def stream(socket: WebSocket, session_id: str) -> None:
     """Send the session's frames and events; take commands."""
-    parts: Components = socket.app.state.parts
     offered = [n for n in socket.scope["subprotocols"] if not n.startswith(KEY_SUBPROTOCOL)]
     if offered and SUBPROTOCOL not in offered:
         # The handshake is completed in the client's own version, so that it can read the reason.
@@ -39,6 +42,7 @@ async def stream(socket: WebSocket, session_id: str) -> None:
         await socket.close(_PROTOCOL_ERROR, f"this service speaks {SUBPROTOCOL} only")
         return
     try:
+        parts = await parts_of(socket.scope)
         session = await parts.sessions.get(session_id)
         viewer = parts.sessions.watch(session)
     except Refused as refused:
@@ -46,16 +50,29 @@ async def stream(socket: WebSocket, session_id: str) -> None:
             json_response(refused.body(), status=refused.status, headers=refused.headers)
         )
         return
+    ending = _end_with(socket.scope["risorius.access"], viewer)
     try:
         await socket.accept(subprotocol=SUBPROTOCOL if offered else None)
         view = await parts.sessions.view(session)
-        await _send_event(socket, session.hello(view))
+        role = socket.scope["risorius.access"].role
+        await _send_event(socket, {**session.hello(view), "role": role})
         await _converse(socket, parts, session, viewer)
     except (WebSocketDisconnect, Refused):
         pass  # The viewer left, or the session was closed between two lines above.
     finally:
+        if ending is not None:
+            ending.cancel()
         parts.sessions.leave(session, viewer)
         parts.metrics.frames_skipped.inc(viewer.skipped)
+
+
+def _end_with(access: Access, viewer: Viewer) -> asyncio.TimerHandle | None:
+    """Have a socket closed with the ticket that it was opened by, where it was by one."""
+    if access.expires is None:
+        return None
+    left = access.expires - time.monotonic()
+    loop = asyncio.get_running_loop()
+    return loop.call_later(left, viewer.end, _NOT_ALLOWED, "the ticket is over")
 
 
 async def _converse(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:
@@ -111,6 +128,7 @@ async def _obey(
         if isinstance(message, AckMessage):
             viewer.acknowledge(message.tick)
             return
+        parts.sessions.check_commands()
         if not parts.rate.allow(client):
             viewer.offer(_error("too_many_requests", "too many messages; slow down"))
             return

@@ -28,7 +28,7 @@ from starlette.requests import Request
 
 from engine import Rig
 
-from ..components import Components
+from ..components import Components, parts_of
 from ..errors import Refused, Unprocessable, error_body
 from ..explaining import explain
 from ..version import version
@@ -66,7 +66,8 @@ def manager_of(parts: Components, rig: Rig) -> StreamableHTTPSessionManager:
         if tool is None:
             message = f"there is no tool {params.name!r}; there are {', '.join(by_name)}"
             raise MCPError(code=INVALID_PARAMS, message=message)
-        return await _called(tool, params.arguments or {}, parts, _caller(context))
+        seen = await parts_of(_request(context).scope)
+        return await _called(tool, params.arguments or {}, seen, _caller(context))
 
     server: Server[Any] = Server(
         "risorius",
@@ -166,6 +167,9 @@ def _caller(context: Context) -> Caller:
     """Return who calls: by the name it gave with the request, or when the connection began."""
     client = context.session.client_params
     name = client.client_info.name if client is not None else None
-    request = context.request
-    assert request is not None  # Every message comes over HTTP.
-    return Caller(owner_named(name), str(request.base_url).rstrip("/"))
+    return Caller(owner_named(name), str(_request(context).base_url).rstrip("/"))
+
+
+def _request(context: Context) -> Request:
+    assert context.request is not None  # Every message comes over HTTP.
+    return context.request

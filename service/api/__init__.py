@@ -4,11 +4,35 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from . import clips, emotions, facs, insight, maps, people, rigs, sessions, system, textures
+from . import (
+    clips,
+    emotions,
+    facs,
+    insight,
+    maps,
+    people,
+    rigs,
+    sessions,
+    system,
+    textures,
+    tickets,
+)
 from .answers import ERRORS
 
 router = APIRouter(responses=ERRORS)
-for module in (system, people, rigs, textures, maps, emotions, sessions, facs, insight, clips):
+for module in (
+    system,
+    people,
+    rigs,
+    textures,
+    maps,
+    emotions,
+    sessions,
+    tickets,
+    facs,
+    insight,
+    clips,
+):
     router.include_router(module.router)
 
 __all__ = ["router"]

@@ -22,13 +22,13 @@ class ErrorBody(BaseModel):
 _MEANINGS = {
     400: "The body is not JSON.",
     401: "Keys are set, and none was sent.",
-    403: "Pages of this origin may not use the service.",
+    403: "Pages of this origin may not use the service, or this ticket is not for that.",
     404: "There is no such thing.",
     409: "The thing is not in a state for this.",
     413: "The body is too large.",
     421: "The service does not answer for this host.",
     422: "A name or a value cannot be used.",
-    429: "Too many requests; Retry-After says when to ask again.",
+    429: "Too many requests, or more than the key may take; Retry-After says when to ask again.",
     503: "A limit is reached, or the service warms up.",
 }
 # Written out, because FastAPI would give a model the media type of the route's good answer.

@@ -84,6 +84,17 @@ def test_every_attribute_of_a_recipe_is_documented_as_it_is(api: str) -> None:
     assert list(table) == list(expected)
 
 
+def test_every_command_of_a_group_is_documented_and_has_help(api: str) -> None:
+    for group in command_line.registered_groups:
+        assert group.typer_instance is not None
+        for command in group.typer_instance.registered_commands:
+            name = command.name or command.callback.__name__  # type: ignore[union-attr]
+            assert f"| `risorius {group.name} {name}" in api
+            answer = CliRunner().invoke(command_line, [str(group.name), name, "--help"])
+            assert answer.exit_code == 0
+            assert "Usage" in answer.output
+
+
 def test_every_command_is_documented_and_has_help(api: str) -> None:
     for command in command_line.registered_commands:
         name = command.callback.__name__  # type: ignore[union-attr]
