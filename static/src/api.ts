@@ -1,6 +1,7 @@
 // REST calls of the viewer, and the addresses it links to.
 
 import type { AttributeInfo, Recipe } from './recipe';
+import { withTicket } from './ticket';
 
 /** Anything numeric in here can be edited; see tissueFields. */
 export type Tissue = Record<string, unknown>;
@@ -63,7 +64,14 @@ export class ApiError extends Error {
   }
 }
 
+const TICKET_SECONDS = 86_400;
+
 export class Api {
+  /** A key of the service, empty where none is asked for; it goes into headers only. */
+  key = '';
+  /** A ticket for the session that is shown, for what takes no headers. */
+  ticket = '';
+
   /** @param base address of the page, e.g. `https://host/face/`; the API lies beside it under `api/`. */
   constructor(private readonly base: string) {}
 
@@ -108,6 +116,14 @@ export class Api {
     return this.json('GET', `api/sessions/${id}`) as Promise<SessionInfo>;
   }
 
+  /** Exchange the key for a ticket of a session; without a key nothing is needed. */
+  async takeTicket(id: string): Promise<void> {
+    if (this.key === '') return;
+    const asked = { role: 'control', seconds: TICKET_SECONDS };
+    const issued = await this.json('POST', `api/sessions/${id}/tickets`, asked);
+    this.ticket = (issued as { ticket: string }).ticket;
+  }
+
   closeSession(id: string): Promise<unknown> {
     return this.json('DELETE', `api/sessions/${id}`);
   }
@@ -126,9 +142,14 @@ export class Api {
   }
 
   /** Absolute address of a path that the service named, or of one below the page. */
-  address(path: string): string {
+  place(path: string): string {
     const below = path.startsWith('/api/') ? path.slice(1) : path;
     return new URL(below, this.base).href;
+  }
+
+  /** The same with the ticket, where the service asks for one. */
+  address(path: string): string {
+    return withTicket(this.place(path), /^\/?api\//.test(path) ? this.ticket : '');
   }
 
   streamAddress(id: string): string {
@@ -140,9 +161,11 @@ export class Api {
     try {
       response = await fetch(this.address(path), {
         method,
-        ...(body === undefined
-          ? {}
-          : { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json' } }),
+        headers: {
+          ...(this.key === '' ? {} : { Authorization: `Bearer ${this.key}` }),
+          ...(body === undefined ? {} : { 'Content-Type': 'application/json' }),
+        },
+        ...(body === undefined ? {} : { body: JSON.stringify(body) }),
       });
     } catch {
       throw new ApiError(0, 'The service does not answer.');

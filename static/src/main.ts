@@ -22,12 +22,14 @@ import { describeRig, readable, tissuePatch } from './state/rig';
 import { ViewerState } from './state/viewer.svelte';
 import './style.css';
 import { debounce } from './throttle';
+import { ticketIn, withTicket } from './ticket';
 import { TickRate } from './tick-rate';
 import type { Recipe } from './recipe';
 import { readPageOptions } from './url';
 
 const page = readPageOptions(window.location.search);
 const api = new Api(document.baseURI);
+api.ticket = ticketIn(window.location.href);
 const viewer = new ViewerState();
 const rate = new TickRate();
 viewer.rigName = page.rig;
@@ -35,7 +37,10 @@ viewer.view = page.view;
 document.body.classList.toggle('bare', page.bare);
 
 const PERSON_PAUSE_MS = 350;
+/** Where the key is kept: as long as the tab is open, and for this page only. */
+const KEY_PLACE = 'risorius.key';
 const START_POLL_MS = 500;
+api.key = window.sessionStorage.getItem(KEY_PLACE) ?? '';
 /** What was asked of the person on the stage since they were made; the rest follows sex and age. */
 let wished: Recipe = {};
 let wishes = 0;
@@ -58,7 +63,7 @@ const element = (id: string): HTMLElement => document.getElementById(id)!;
 const scene = createScene();
 const level = chooseLevel();
 const connection = new Connection({
-  locate: locateStream,
+  locate: () => locateStream().catch(askForKey),
   onHello: (hello) => void welcome(hello),
   onState: (message) => {
     takeState(message.state ?? message);
@@ -104,7 +109,11 @@ async function locateStream(): Promise<string> {
       if (error instanceof ApiError && error.status === 404) return null;
       throw error;
     });
-    if (known !== null) return streamOf(known);
+    if (known !== null) {
+      await api.takeTicket(known.id);
+      return streamOf(known);
+    }
+    if (isGuest()) throw new ApiError(404, 'This face was closed.');
   }
   viewer.step = { words: `Preparing ${who()}`, share: null };
   void tellOfStart();
@@ -114,7 +123,26 @@ async function locateStream(): Promise<string> {
   address.searchParams.set('session', session);
   address.searchParams.set('rig', viewer.rigName);
   window.history.replaceState(null, '', address);
+  await api.takeTicket(session);
   return streamOf(opened);
+}
+
+/** Whether the page came by a link for one face. */
+function isGuest(): boolean {
+  return api.ticket !== '' && api.key === '';
+}
+
+/** Where the service wants to know who asks, ask them; the error goes on. */
+function askForKey(error: unknown): never {
+  if (error instanceof ApiError && error.status === 401) {
+    viewer.locked = isGuest()
+      ? 'This link is no longer valid. Ask for another one, or give a key.'
+      : api.key === ''
+        ? 'This service asks for a key.'
+        : 'This key is not known here.';
+    element('curtain').classList.remove('open');
+  }
+  throw error;
 }
 
 /** Say what the service is at for as long as it starts: a first start takes a minute. */
@@ -142,8 +170,11 @@ function streamOf(info: SessionInfo): string {
 /** A hello, first or later: the face on the stage may be of another rig. */
 async function welcome(hello: Hello): Promise<void> {
   viewer.session = session = hello.session;
+  viewer.locked = '';
+  if (viewer.surfaceReady) element('curtain').classList.add('open');
+  if (hello.role !== undefined) document.body.classList.toggle('watching', hello.role === 'read');
   if (hello.state !== undefined) takeState(hello.state);
-  const address = atLevel(api.address(hello.surface), level);
+  const address = atLevel(api.place(hello.surface), level);
   try {
     // A live edit moves the session to another rig on the same surface; only a true hello may change it.
     if (hello.type === 'hello' && address !== surfaceAddress) await showFace(address);
@@ -162,7 +193,7 @@ async function showFace(address: string): Promise<void> {
   surfaceLoading = true;
   frameSeen = false;
   viewer.step = fetching(who(), 0, 0);
-  const loaded = await Face.load(address, (bytes, total) => {
+  const loaded = await Face.load(withTicket(address, api.ticket), (bytes, total) => {
     if (surfaceAddress === address) viewer.step = fetching(who(), bytes, total);
   }).catch((error: unknown) => {
     // The next hello may try again.
@@ -291,6 +322,10 @@ const actions: Actions = {
   },
   switchRig(rig) {
     if (rig === viewer.rigName && viewer.status === 'open') return;
+    if (isGuest()) {
+      viewer.say('This link is for one face. Open the page with a key to see others.');
+      return;
+    }
     const left = session;
     session = '';
     viewer.rigName = rig;
@@ -326,6 +361,14 @@ const actions: Actions = {
   },
   reconnect: () => {
     connection.connect();
+  },
+  unlock(key) {
+    api.key = key;
+    window.sessionStorage.setItem(KEY_PLACE, key);
+    viewer.locked = '';
+    viewer.say('');
+    connection.connect();
+    if (!page.bare) void loadPeople();
   },
 };
 
@@ -387,8 +430,19 @@ function shownFace(): Face {
   return face;
 }
 
+/** List the people, once the service may be asked. */
+async function loadPeople(): Promise<void> {
+  try {
+    const { people, attributes } = await api.people();
+    viewer.attributes = attributes ?? {};
+    viewer.people = people.map(({ name, title }) => ({ name, title, label: readable(name) }));
+  } catch (error) {
+    if (!(error instanceof ApiError && error.status === 401)) sayWhy(error);
+  }
+}
+
 element('curtain').textContent = '';
-mount(Curtain, { target: element('curtain'), props: { viewer } });
+mount(Curtain, { target: element('curtain'), props: { viewer, actions } });
 if (!page.bare) {
   element('face').addEventListener(
     'pointerdown',
@@ -400,13 +454,7 @@ if (!page.bare) {
   mount(StatusBar, { target: element('bar'), props: { viewer, actions } });
   const link = (path: string): string => api.address(path);
   mount(People, { target: element('people'), props: { viewer, actions, link } });
-  api
-    .people()
-    .then(({ people, attributes }) => {
-      viewer.attributes = attributes ?? {};
-      viewer.people = people.map(({ name, title }) => ({ name, title, label: readable(name) }));
-    })
-    .catch(sayWhy);
+  void loadPeople();
   mount(Panels, {
     target: element('panels'),
     props: { viewer, actions, link },

@@ -157,6 +157,8 @@ export interface Hello {
   grid: number;
   tick: number;
   state?: FaceState;
+  /** `read` where nobody listens to commands. */
+  role?: 'read' | 'control';
 }
 
 export interface StateMessage extends FaceState {

@@ -10,6 +10,7 @@ import {
   SRGBColorSpace,
   Texture as ImageTexture,
 } from 'three';
+import { ticketIn, withTicket } from './ticket';
 
 /** What a map holds until its file is there: nothing that shows. */
 const BLANK = {
@@ -36,7 +37,8 @@ export function mapAddresses(extras: unknown, surface: string): Partial<Record<M
   const found: Partial<Record<MapName, string>> = {};
   for (const name of NAMES) {
     const path = named?.[name];
-    if (typeof path === 'string') found[name] = new URL(path, surface).href;
+    if (typeof path === 'string')
+      found[name] = withTicket(new URL(path, surface).href, ticketIn(surface));
   }
   return found;
 }

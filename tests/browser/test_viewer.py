@@ -242,3 +242,32 @@ def test_a_sheet_is_drawn(tmp_path: Path) -> None:
         assert sheet.size == (480, 174)
         rest, jaw_drop = (sheet.crop((left, 0, left + 160, 160)) for left in (0, 160))
         assert ImageChops.difference(rest, jaw_drop).getbbox() is not None
+
+
+def test_a_link_shows_its_face_and_a_key_opens_the_page(
+    page: playwright_api.Page, tmp_path: Path
+) -> None:
+    settings = Settings(data_dir=tmp_path, api_keys=("a-key",))
+    app = create_app(settings)
+    with running(app, settings) as url:
+        deadline = time.monotonic() + START_SECONDS
+        while not app.state.parts.ready.is_set():
+            assert time.monotonic() < deadline, app.state.parts.stage
+            time.sleep(0.1)
+        key = {"X-API-Key": "a-key"}
+        session = page.request.post(f"{url}/api/sessions", data={}, headers=key).json()["id"]
+        tickets = f"{url}/api/sessions/{session}/tickets"
+        asked = {"role": "read"}
+        link = page.request.post(tickets, data=asked, headers=key).json()["url"]
+        refused: list[str] = []
+        page.on("response", lambda got: refused.append(got.url) if got.status >= 400 else None)
+        page.goto(f"{link}&bare=1&level=low&dpr=0.25")
+        page.wait_for_function("() => window.__viewer?.ready && window.__viewer.textured")
+        assert page.evaluate("() => window.__viewer.session") == session
+        assert refused == []
+        playwright_api.expect(page.locator("body")).to_have_class(re.compile("watching"))
+        page.goto(f"{url}/?level=low&dpr=0.25")
+        page.get_by_label("This service asks for a key.").fill("a-key")
+        page.get_by_role("button", name="Open").click()
+        page.wait_for_function("() => window.__viewer.connected")
+        playwright_api.expect(page.locator("#panels")).to_be_visible()

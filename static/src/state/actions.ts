@@ -26,4 +26,6 @@ export interface Actions {
   reset(): void;
   /** Leave the pause between attempts and connect now. */
   reconnect(): void;
+  /** Go on with a key that the visitor gave. */
+  unlock(key: string): void;
 }

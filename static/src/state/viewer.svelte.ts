@@ -58,6 +58,8 @@ export class ViewerState {
   meeting = $state(false);
   rig = $state.raw<Rig | null>(null);
   surfaceReady = $state(false);
+  /** What the page says while it asks for a key; empty where none is asked for. */
+  locked = $state('');
   /** What is being done before the face is there, or before its skin is; null when all is. */
   step = $state.raw<Step | null>({ words: 'Connecting to the service', share: null });
   tickRate = $state(0);
