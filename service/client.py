@@ -212,6 +212,19 @@ class Face:
         """The page that shows it."""
         return f"{self.client.url}/?session={self.session}"
 
+    def link(self, *, role: str = "read", seconds: float = 300.0) -> str:
+        """Return an address that shows it to somebody without a key, for a while.
+
+        Args:
+            role: "read" to watch, "control" to move it too.
+            seconds: How long it is valid, a day at most.
+
+        Raises:
+            ServiceError: For another role or time.
+        """
+        asked = {"role": role, "seconds": seconds}
+        return str(self.client.json("POST", f"{self._path}/tickets", asked)["url"])
+
     def set_controls(self, *, replace: bool = False, **controls: Any) -> dict[str, Any]:
         """Move what is named, as `PATCH …/controls`; return `tick`, `scale` and `warnings`.
 

@@ -401,8 +401,9 @@ class Sessions:
         """Close the sockets on the sessions of keys that are no more."""
         for session in self._live.values():
             if session.made_by in keys:
+                reason = "the key was taken away" if session.made_by else "a key is needed now"
                 for viewer in session.viewers:
-                    viewer.end(1008, "the key was taken away")
+                    viewer.end(1008, reason)
 
     def leave(self, session: Session, viewer: Viewer) -> None:
         """Forget a viewer."""

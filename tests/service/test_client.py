@@ -27,7 +27,9 @@ KEY = "secret"
 @pytest.fixture(scope="module")
 def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """A service with a key."""
-    settings = settings_in(tmp_path_factory.mktemp("client"), api_keys=(KEY,), max_viewers=1)
+    settings = settings_in(
+        tmp_path_factory.mktemp("client"), api_keys=(KEY,), max_viewers=1, key_sessions=4
+    )
     with running(create_app(settings), settings) as address:
         yield address
 
@@ -124,6 +126,30 @@ def test_what_is_put_off_is_sent_again(tmp_path: Path) -> None:
     with running(create_app(settings), settings) as address, Client(address) as client:
         for _ in range(8):
             client.call("GET", "/api/health")
+
+
+def test_what_is_put_off_for_long_is_given_back_at_once(service: Client) -> None:
+    faces = [service.open_face() for _ in range(4)]
+    with pytest.raises(ServiceError) as refused:
+        service.open_face()
+    assert (refused.value.status, refused.value.error) == (429, "quota_exceeded")
+    for face in faces:
+        face.close()
+    counted = service.call("GET", "/metrics").text
+    assert 'risorius_requests_total{method="POST",status="429"} 1.0' in counted
+
+
+def test_a_link_shows_a_face_without_a_key(service: Client, face: Face) -> None:
+    link = face.link(seconds=60)
+    assert link.startswith(face.viewer_url)
+    ticket = link.rpartition("=")[2]
+    with Client(service.url, key=ticket) as guest:
+        shown = guest.face(face.session)
+        assert shown.state()["id"] == face.session
+        next(shown.frames())
+        with pytest.raises(ServiceError) as refused:
+            shown.set_emotion("joy")
+    assert (refused.value.status, refused.value.error) == (403, "read_only")
 
 
 def test_the_command_line_renders_a_clip_by_a_service(url: str, tmp_path: Path) -> None:

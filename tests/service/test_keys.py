@@ -213,8 +213,14 @@ def test_the_first_key_closes_an_open_service_and_taking_it_away_does_not_open_i
     settings = settings_in(tmp_path)
     store = Store(settings.database)
     with TestClient(create_app(settings), base_url=LOCAL) as client:
-        assert client.get("/api/people").status_code == 200
-        add_key(store, "ada")
+        session = client.post("/api/sessions", json={}).json()["id"]
+        path = f"ws://localhost/api/sessions/{session}/stream"
+        with client.websocket_connect(path) as socket:
+            first(socket, "hello")
+            add_key(store, "ada")
+            with pytest.raises(WebSocketDisconnect) as ended:
+                first(socket, "never")
+            assert (ended.value.code, ended.value.reason) == (1008, "a key is needed now")
         until(lambda: client.get("/api/people").status_code == 401)
         remove_key(store, "ada")
         until(lambda: not parts_of(client).keys._stored)
