@@ -304,6 +304,14 @@ def test_what_another_key_made_is_not_there(keyed: Keyed, method: str, path: str
     assert unknown.json() == {**answer.json(), "message": said}
 
 
+def test_nobody_waits_for_another_key_s_clip(keyed: Keyed) -> None:
+    long = keyed.call("ada", "POST", "/api/clips", {**CLIP, "duration": 100.0}).headers["Location"]
+    assert keyed.call("bob", "GET", f"{long}?wait=60").status_code == 404
+    assert keyed.call("ada", "GET", long).json()["status"] in ("queued", "running")
+    assert keyed.call("ada", "DELETE", long).status_code == 204
+    assert keyed.call("ada", "DELETE", long).status_code == 204
+
+
 def test_no_socket_shows_another_key_s_session(keyed: Keyed) -> None:
     app: Any = keyed.client.app
     places = [r.path for r in app.routes if isinstance(r, APIWebSocketRoute)]
@@ -542,6 +550,8 @@ def test_who_may_read_cannot_command(keyed: Keyed) -> None:
         for message in (command, {"type": "emotion", "label": "joy"}):
             socket.send_text(json.dumps(message))
             assert first(socket, "error")["error"] == "read_only"
+        # Not even which of a recipe's variants comes next.
+        assert not parts_of(keyed.client).sessions._live[keyed.session].turns
         state = keyed.call("ada", "GET", f"/api/sessions/{keyed.session}").json()
         assert state["merged"]["action_units"] == {}
     with keyed.stream(keyed.session, query=f"?ticket={moves}") as socket:
