@@ -8,18 +8,20 @@ import secrets
 import time
 from collections import Counter, deque
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import structlog
 
-from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline, Writers
+from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline, Writers, ticks
 
 from .access import EVERYTHING, Access
 from .bodies import Units
 from .clashes import clashes
 from .commands import held_from_json, held_to_json
 from .errors import Busy, NotFound, QuotaExceeded, refused_by_engine
+from .keeping import Keeper
 from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_frame
 from .rigs import Rigs
 from .runner import Look, Move, Runner, Tick, View
@@ -30,12 +32,12 @@ _LOG = structlog.get_logger("sessions")
 _COMMANDS_KEPT = 20_000
 _BEATS_PER_SECOND = 5
 _SHIFTS = 4
+"""Parts of the sessions that are tended in turn, so that no tick answers for all of them."""
 _RIGS_REMEMBERED = 64
 _FORGET_SECONDS = 60
 """How often stored sessions are looked through for those that nobody uses."""
 _VIEWER_LEAVES_SECONDS = 10
 """When to ask again for a viewer's place: nobody knows when one leaves."""
-"""Parts of the sessions that are tended in turn, so that no tick answers for all of them."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,8 @@ class Session:
         editing: Held while a live edit derives a rig, so that edits follow each other.
         turns: How often each recipe of an emotion was played on it.
         shown: Ids of the rigs that it was on, the last ones.
+        speaking: Layer and owner of what is played at its time, and the tick at which that ends.
+        unsaved: Whether it holds anything that the store was not given yet.
     """
 
     id: str
@@ -79,6 +83,7 @@ class Session:
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
     turns: Counter[str] = field(default_factory=Counter)
     shown: deque[str] = field(default_factory=lambda: deque(maxlen=_RIGS_REMEMBERED))
+    speaking: dict[tuple[str, str], int] = field(default_factory=dict)
     unsaved: bool = False
     state_changed: bool = False
     _encoded: bytes | None = None
@@ -109,8 +114,15 @@ class Session:
             viewer.offer(event)
 
     def to_row(self, tick: int) -> dict[str, Any]:
-        """Return what the store keeps of it at `tick`."""
-        held = held_to_json(self.held.keyframes(tick))
+        """Return what the store keeps of it at `tick`: not what a speech under way holds.
+
+        A service that starts again does not go on speaking, and a mouth must not stay open.
+        """
+        held = held_to_json(
+            keyframe
+            for keyframe in self.held.keyframes(tick)
+            if self.speaking.get((keyframe.layer, keyframe.owner), tick) <= tick
+        )
         return {"id": self.id, "rig": self.rig.id, "held": held, "used": self.used}
 
     def describe(self) -> dict[str, object]:
@@ -146,14 +158,18 @@ class Session:
 
     def take(self, keyframe: Keyframe, tick: int) -> list[str]:
         """Take a command that took effect at `tick`; return who stands over which of it."""
-        for _ in self.held.expire(tick):
-            pass
+        self.lapse(tick)
         self.held.take(keyframe, tick)
         return [
             f"{', '.join(names)}: {owner!r} writes it in {keyframe.layer!r} too, and counts; "
             f"this waits beneath until {owner!r} lets go or has been quiet for half a second"
             for owner, names in self.held.beneath(keyframe).items()
         ]
+
+    def lapse(self, tick: int) -> None:
+        """Let go of the writers whose time is up at `tick`."""
+        for _ in self.held.expire(tick):
+            pass
 
     def note(self, command: Command) -> None:
         """Put a command into the timeline, where its tick is: it is told of a little late."""
@@ -197,6 +213,7 @@ class Sessions:
         self._viewer_limit = viewer_limit
         self._idle_seconds = idle_seconds
         self._access = EVERYTHING
+        self._keeper = Keeper(store)
         self._live: dict[str, Session] = {}
         self._opening = asyncio.Lock()
         self._tasks: list[asyncio.Task[None]] = []
@@ -305,7 +322,19 @@ class Sessions:
         await self._runner.close(session_id)
 
     async def apply(self, session: Session, keyframe: Keyframe) -> tuple[int, list[str]]:
-        """Apply a command; return the tick at which it takes effect, and warnings.
+        """Apply a command and keep it; return the tick at which it takes effect, and warnings.
+
+        Raises:
+            Refused: If a name or a value of it does not fit the rig.
+            Forbidden: If they may only watch.
+            Busy: If it was applied, and could not be kept.
+        """
+        tick, warnings = await self.apply_unkept(session, keyframe)
+        await self._keeper.keep(session, tick)
+        return tick, warnings
+
+    async def apply_unkept(self, session: Session, keyframe: Keyframe) -> tuple[int, list[str]]:
+        """Apply a command that nobody waits for; it is kept within a second, or with the next one.
 
         Raises:
             Refused: If a name or a value of it does not fit the rig.
@@ -325,13 +354,23 @@ class Sessions:
     async def perform(self, session: Session, keyframes: Sequence[Keyframe]) -> int:
         """Play keyframes, which fit the rig, at their times from now; return the first tick.
 
-        They take the place of what the same owners still have to come in the same layers.
+        They take the place of what the same owners still have to come in the same layers, and of
+        what they hold there: that is not kept.
 
         Raises:
             Forbidden: If they may only watch.
+            Busy: If it is played, and could not be kept.
         """
         self.check_commands()
-        return await self._runner.perform(session.id, keyframes)
+        tick = await self._runner.perform(session.id, keyframes)
+        speaking: dict[tuple[str, str], int] = {}
+        for each in keyframes:
+            whose, end = (each.layer, each.owner), tick + 1 + ticks(each.time + (each.ttl or 0.0))
+            speaking[whose] = max(end, speaking.get(whose, end))
+        others = {whose: end for whose, end in session.speaking.items() if end > tick}
+        session.speaking = {**others, **speaking}
+        await self._keeper.keep(session, tick)
+        return tick
 
     async def move(self, session: Session, rig: Rig) -> int:
         """Carry a session's face over to another rig; return the tick of it.
@@ -348,6 +387,7 @@ class Sessions:
         self._rigs.bake(rig)
         session.unsaved = session.state_changed = True
         session.tell({"type": "rig", "session": session.id, **session.on_rig()})
+        await self._keeper.keep(session, tick)
         return tick
 
     async def view(self, session: Session) -> View:
@@ -434,6 +474,7 @@ class Sessions:
             session = self._live.get(session_id)
             if session is not None:
                 session.held.clear()
+                session.speaking.clear()
                 session.unsaved = session.state_changed = True
                 message = "the simulation left the finite numbers; the face is back at rest"
                 session.tell({"type": "error", "error": "diverged", "message": message})
@@ -486,22 +527,18 @@ class Sessions:
             await self.close(session.id)
 
     async def _save_changed(self, sessions: Sequence[Session]) -> None:
-        """Save those that were commanded; a database that is busy has its next try."""
-        changed = [session for session in sessions if session.unsaved]
-        for session in changed:
-            session.unsaved = False  # What comes while they are saved is saved the next time.
-        try:
-            await self._save(changed)
-        except Exception:
-            for session in changed:
-                session.unsaved = True
-            _LOG.exception("sessions could not be saved", sessions=len(changed))
+        """Save those that were commanded, and what is left of leases."""
+        with suppress(Busy):  # The next beat tries again.
+            await self._save(
+                [each for each in sessions if each.unsaved or each.held.alarm() is not None]
+            )
 
     async def _save(self, sessions: Sequence[Session]) -> None:
-        store = self._store
-        rows = [session.to_row(await self._tick_of(session)) for session in sessions]
-        if rows:
-            await store.aside(lambda: store.keep_sessions(rows))
+        ticks_now = await asyncio.gather(*(self._tick_of(session) for session in sessions))
+        each = list(zip(sessions, ticks_now, strict=True))
+        for session, tick in each:
+            session.lapse(tick)
+        await asyncio.gather(*(self._keeper.keep(session, tick) for session, tick in each))
 
     async def _tick_of(self, session: Session) -> int:
         """Return a session's tick: no frame tells it of a face that sleeps until a lease ends."""

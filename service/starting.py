@@ -147,6 +147,7 @@ class Started:
 
     Attributes:
         process: Which.
+        url: Where it is.
         answers: Seconds until it answered at all.
         ready: Seconds until a face could be opened.
     """
@@ -158,14 +159,14 @@ class Started:
             StartFailed: It is not, in time.
         """
         self.process = process
-        self._url = self._said(r"http://\S+")
+        self.url = self._said(r"http://\S+")
         self.answers = self._answered("/api/health", began)
         self.ready = self._answered("/api/ready", began)
 
     def ask(self, method: str, path: str, body: object) -> Any:
         """Return the answer to a request."""
         request = urllib.request.Request(
-            self._url + path,
+            self.url + path,
             json.dumps(body).encode(),
             {"Content-Type": "application/json"},
             method=method,
@@ -175,7 +176,7 @@ class Started:
 
     def wait_for(self, path: str) -> None:
         """Read what may take long to be made."""
-        with urllib.request.urlopen(self._url + path, timeout=_LONGEST_SECONDS) as answer:
+        with urllib.request.urlopen(self.url + path, timeout=_LONGEST_SECONDS) as answer:
             answer.read()
 
     def _said(self, pattern: str) -> str:
@@ -191,7 +192,7 @@ class Started:
     def _answered(self, path: str, began: float) -> float:
         while time.perf_counter() - began < _LONGEST_SECONDS:
             try:
-                with urllib.request.urlopen(self._url + path, timeout=60.0):
+                with urllib.request.urlopen(self.url + path, timeout=60.0):
                     return time.perf_counter() - began
             except urllib.error.HTTPError as error:
                 error.close()
@@ -202,13 +203,13 @@ class Started:
 
 
 @contextmanager
-def service(environment: dict[str, str] | None = None) -> Iterator[Started]:
-    """Start a service with an empty database; it ends with the block."""
+def service(environment: dict[str, str] | None = None, *, port: int = 0) -> Iterator[Started]:
+    """Start a service, with an empty database unless told another; it ends with the block."""
     with tempfile.TemporaryDirectory(prefix="risorius-start-") as folder:
         own = {"RISORIUS_DATA_DIR": folder, "RISORIUS_API_KEYS": "", "RISORIUS_DATABASE_URL": ""}
         began = time.perf_counter()
         process = subprocess.Popen(
-            [sys.executable, "-m", "service", "serve", "--host", "127.0.0.1", "--port", "0"],
+            [sys.executable, "-m", "service", "serve", "--host", "127.0.0.1", "--port", str(port)],
             env={**os.environ, **own, **(environment or {})},
             stderr=subprocess.PIPE,
             text=True,

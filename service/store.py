@@ -16,6 +16,7 @@ from sqlalchemy import (
     Float,
     String,
     Text,
+    bindparam,
     create_engine,
     delete,
     event,
@@ -124,6 +125,10 @@ class ClipRow(Table):
     created: Mapped[float] = mapped_column(Float)
     finished: Mapped[float | None] = mapped_column(Float, default=None)
     made_by: Mapped[str] = mapped_column(String(64), default="", server_default="")
+
+
+_KEEP_SESSION = update(SessionRow).where(SessionRow.id == bindparam("which"))
+"""One statement for all rows of a commit, compiled once; it sets what their values name."""
 
 
 class StoreUnavailable(Exception):
@@ -290,12 +295,16 @@ class Store:
         Args:
             rows: Of each its `id`, `rig`, `held` and `used`.
         """
-        with self._session.begin() as session:
-            for row in rows:
-                values = {name: row[name] for name in ("rig", "held", "used")}
-                session.execute(
-                    update(SessionRow).where(SessionRow.id == row["id"]).values(**values)
-                )
+        if not rows:
+            return
+        with self.engine.begin() as connection:
+            connection.execute(
+                _KEEP_SESSION,
+                [
+                    {"which": row["id"], **{name: row[name] for name in ("rig", "held", "used")}}
+                    for row in rows
+                ],
+            )
 
     def remove_session(self, session_id: str) -> None:
         """Forget a session."""

@@ -136,7 +136,7 @@ async def _obey(
             keyframe = controls_keyframe(message, session.rig, replace=message.replace)
         else:
             keyframe = play_emotion(message, session.rig, session.turns).keyframe
-        _, warnings = await parts.sessions.apply(session, keyframe)
+        _, warnings = await parts.sessions.apply_unkept(session, keyframe)
         if isinstance(message, ControlsMessage):
             warnings += session.clashes_of(message, keyframe)
         for warning in warnings:

@@ -20,6 +20,7 @@ from service.app import create_app  # noqa: E402
 from service.browser import NoBrowser, chromium  # noqa: E402
 from service.server import running  # noqa: E402
 from service.settings import Settings  # noqa: E402
+from service.starting import service  # noqa: E402
 
 pytestmark = pytest.mark.browser
 TIMEOUT_MS = 120_000
@@ -271,3 +272,34 @@ def test_a_link_shows_its_face_and_a_key_opens_the_page(
         page.get_by_role("button", name="Open").click()
         page.wait_for_function("() => window.__viewer.connected")
         playwright_api.expect(page.locator("#panels")).to_be_visible()
+
+
+def test_a_viewer_comes_back_to_its_face_when_the_service_was_killed(
+    page: playwright_api.Page, url: str, tmp_path: Path
+) -> None:
+    folder = {"RISORIUS_DATA_DIR": str(tmp_path)}
+    with service(folder) as started:
+        page.goto(f"{started.url}?bare=1")
+        rest = settle(page)
+        session = page.evaluate("() => window.__viewer.session")
+        before = [height(page, corner) for corner in CORNERS]
+        controls = f"/api/sessions/{session}/controls"
+        started.ask("PATCH", controls, {"action_units": {"AU12": 1}})
+        settle(page, rest)
+        smile = [height(page, corner) for corner in CORNERS]
+        assert min(high - low for high, low in zip(smile, before, strict=True)) > 0.002
+        started.process.kill()
+        started.process.wait()
+        page.wait_for_function("() => !window.__viewer.connected")
+    with service(folder, port=int(started.url.rpartition(":")[2])) as again:
+        page.wait_for_function("() => window.__viewer.connected")
+        assert page.evaluate("() => window.__viewer.session") == session
+        held = again.ask("GET", f"/api/sessions/{session}", None)["layers"]["puppet"]
+        assert held["action_units"] == {"AU12": 1.0}
+        # It is the same face to the page: what moves it now is drawn.
+        again.ask("PATCH", controls, {"action_units": {"AU12": 0}})
+        page.wait_for_function(
+            "([name, top]) =>"
+            " window.__viewer.drawnVertex(window.__viewer.landmarks[name])[1] < top",
+            arg=[CORNERS[0], before[0] + 0.2 * (smile[0] - before[0])],
+        )
