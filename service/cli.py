@@ -260,23 +260,39 @@ def bench(
     quick: Annotated[
         bool, typer.Option("--quick", help="Measure shortly and roughly, in under a minute.")
     ] = False,
+    only: Annotated[
+        str, typer.Option(help="Parts to measure, comma separated, such as emotion_to_frame.")
+    ] = "",
     docs: Annotated[
         Path | None,
         typer.Option(help="Folder to write the page, its picture and a row of figures into."),
     ] = None,
 ) -> None:
     """Measure the simulation beside its peers, the clips and the stream on this machine."""
-    from .benching import measure
+    from .benching import PARTS, measure
     from .benching.documents import write_documents
     from .benching.ledger import OtherColumns
     from .benching.report import terminal
+    from .explaining import did_you_mean
+    from .soak_client import SoakRefused
 
-    if quick and docs is not None:
-        _refuse("Documents take a whole run; leave out --quick or --docs.")
+    parts = _words(only) or PARTS
+    for part in set(parts) - set(PARTS):
+        hint = did_you_mean(part, PARTS)
+        _refuse(f"There is no part {part!r}{hint or '; there are ' + ', '.join(PARTS)}.")
+    if (quick or only) and docs is not None:
+        _refuse("Documents take a whole run; leave out --quick and --only, or --docs.")
     if docs is not None and not docs.is_dir():
         _refuse(f"The folder {docs} does not exist; make it first.")
-    with _console.status("measuring") as status:
-        figures = measure(quick=quick, show=lambda stage: status.update(f"measuring: {stage}"))
+    try:
+        with _console.status("measuring") as status:
+            figures = measure(
+                only=parts,
+                quick=quick,
+                show=lambda stage: status.update(f"measuring: {stage}"),
+            )
+    except SoakRefused as refused:
+        _refuse(f"The service cannot be measured: {refused}")
     if as_json:
         typer.echo(json.dumps(figures, indent=2, allow_nan=False))
     else:

@@ -89,8 +89,8 @@ async def _latencies(rig: Rig, faces: int, commands: int) -> dict[str, Any]:
         return {
             "faces": faces,
             "commands": commands,
-            **_spread("answered", answered),
-            **_spread("seen", seen),
+            **spread("answered", answered),
+            **spread("seen", seen),
             "ticks": counters.ticks - ticks,
             "late_ticks": counters.overruns - late,
             "busy_percent": round(100 * (counters.busy_seconds - busy) / took, 1),
@@ -113,6 +113,7 @@ async def _keep_moving(runner: EmbeddedRunner, rig: Rig, names: list[str]) -> No
         tick += 1
 
 
-def _spread(name: str, seconds: list[float]) -> dict[str, float]:
+def spread(name: str, seconds: list[float]) -> dict[str, float]:
+    """Return median and 99th percentile of durations [s], in ms, named after what they are of."""
     median, rare = (1000 * float(np.percentile(seconds, share)) for share in (50, 99))
     return {f"{name}_median_ms": round(median, 1), f"{name}_p99_ms": round(rare, 1)}

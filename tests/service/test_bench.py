@@ -66,6 +66,27 @@ def test_every_figure_is_measured(figures: Figures) -> None:
         assert row["answered_median_ms"] <= row["seen_median_ms"] <= row["seen_p99_ms"]
 
 
+def test_an_emotion_is_timed_to_its_first_frame_beside_others(figures: Figures) -> None:
+    found = figures["emotion_to_frame"]
+    assert found["others"] == 20
+    assert found["awake_median"] >= 20
+    assert found["ticks"] > found["late_ticks"] >= 0
+    assert [row["way"] for row in found["ways"]] == ["at once", "with its own onset"]
+    for row in found["ways"]:
+        assert row["emotions"] > 0
+        assert 0 < row["answered_median_ms"] <= row["answered_p99_ms"]
+        assert 0 < row["frame_median_ms"] <= row["frame_p99_ms"]
+        assert row["frame_median_ticks"] == pytest.approx(0.06 * row["frame_median_ms"], abs=0.01)
+    at_once, onset = found["ways"]
+    assert at_once["moved_median_ticks"] < onset["moved_median_ticks"]
+
+
+def test_one_part_is_measured_alone() -> None:
+    figures = measure(only=["roof"], quick=True)
+    assert "crowds" not in figures
+    assert [section.title for section in sections(figures)] == ["The roof of the machine"]
+
+
 def test_the_lanes_outrun_what_does_the_same_work(figures: Figures) -> None:
     """At sixteen faces, in the same run: generously, for a machine that does other things."""
     assert peer(figures, "lanes (float32)")["ratio"]["16"] == 1.0

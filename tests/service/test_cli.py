@@ -187,3 +187,7 @@ def test_a_service_starts_says_where_and_stops(tmp_path: Path) -> None:
 def test_documents_of_a_short_run_are_refused(tmp_path: Path) -> None:
     assert "leave out --quick" in refused(run("bench", "--quick", "--docs", tmp_path))
     assert "does not exist" in refused(run("bench", "--docs", tmp_path / "nowhere"))
+
+
+def test_a_part_of_the_benchmark_that_is_not_there_is_said() -> None:
+    assert "did you mean 'crowds'" in refused(run("bench", "--only", "crowd"))
