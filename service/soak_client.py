@@ -221,12 +221,13 @@ def own_service() -> Iterator[str]:
             text=True,
         )
         assert process.stderr is not None
+        # Reads on, so that it never waits for somebody to read what it logs.
+        copying = threading.Thread(target=_copy, args=(process.stderr,), daemon=True)
         try:
             first = process.stderr.readline().split()
             if not first or not first[-1].startswith("http"):
                 raise SoakRefused(f"the service did not start: {' '.join(first)}")
-            # Read on, so that it never waits for somebody to read what it logs.
-            threading.Thread(target=_copy, args=(process.stderr,), daemon=True).start()
+            copying.start()
             yield first[-1]
         finally:
             process.terminate()
@@ -235,6 +236,9 @@ def own_service() -> Iterator[str]:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+            if copying.is_alive():
+                copying.join()
+            process.stderr.close()
 
 
 def _copy(log: Any) -> None:
