@@ -28,6 +28,7 @@ class Held:
         action_units, muscles, axes: Values by name.
         expression: Whether its units began as a whole expression.
         emotion: The emotion that this was, if it has a name.
+        plays: What the expression is called and made of, as its command said.
         weight: How much of the lower layers it overrides, 0..1.
         since: Tick since which it has held anything.
         expires: Tick at which it lets go; None stays.
@@ -41,6 +42,7 @@ class Held:
     axes: dict[tuple[str, str], float] = field(default_factory=dict)
     expression: bool = False
     emotion: tuple[str, float] | None = None
+    plays: Mapping[str, object] = field(default_factory=dict)
     weight: float = 1.0
     since: int = 0
     expires: int | None = None
@@ -56,7 +58,8 @@ class Held:
     @property
     def told(self) -> bool:
         """True when there is anything to tell: an expression may be without units and name."""
-        return bool(self.action_units or self.muscles or self.axes or self.emotion)
+        named = self.emotion or self.plays
+        return bool(self.action_units or self.muscles or self.axes or named)
 
     @property
     def newest(self) -> int:
@@ -70,13 +73,14 @@ class Held:
     def clear(self) -> None:
         """Let go of everything."""
         self.action_units, self.muscles, self.axes = {}, {}, {}
-        self.expression, self.emotion = False, None
+        self.expression, self.emotion, self.plays = False, None, {}
 
     def take(self, keyframe: Keyframe, rig: Rig) -> set[Thing]:
         """Take a command; return the things that it names."""
         named: set[Thing] = set()
         if keyframe.emotion is not None or keyframe.expression:
-            self.expression, self.emotion, self.action_units = True, keyframe.emotion, {}
+            self.expression, self.action_units = True, {}
+            self.emotion, self.plays = keyframe.emotion, keyframe.plays
             recipe = recipe_of(keyframe.emotion, rig)
             hold_units(rig, self.action_units, recipe)
             named |= {EXPRESSION, *sides_of(rig, recipe)}
@@ -113,6 +117,7 @@ class Held:
             axes={axis: value for axis, value in self.axes.items() if ("axis", *axis) in own},
             expression=EXPRESSION in own,
             emotion=self.emotion if EXPRESSION in own else None,
+            plays=self.plays if EXPRESSION in own else {},
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
@@ -49,6 +49,8 @@ class Keyframe:
         emotion: Label and intensity: an expression by name.
         expression: True if its units are a whole expression, as an emotion's are: they replace
             those that the owner held in the layer, and cover those that others hold there.
+        plays: What an expression is called and made of, as plain data: it is told back with what
+            is held, and moves nothing.
         fade: Seconds over which the face moves there; None gives each action unit its own onset or
             offset, and everything else none.
         hold: Seconds to stay, once reached, before all that the owner holds there lets go; None
@@ -77,6 +79,7 @@ class Keyframe:
     weight: float = 1.0
     replace: bool = False
     expression: bool = False
+    plays: Mapping[str, object] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, object]:
         """Return the keyframe as plain data, without what it does not say."""
@@ -218,6 +221,8 @@ def _keyframe(index: int, entry: object) -> Keyframe:
     values["expression"] = bool(entry.get("expression", False))
     if "emotion" in entry:
         values["emotion"] = _emotion(index, entry["emotion"])
+    if "plays" in entry:
+        values["plays"] = _plain(index, "plays", entry["plays"])
     return Keyframe(**values)
 
 
@@ -273,13 +278,17 @@ def _emotion(index: int, value: object) -> tuple[str, float]:
     )
 
 
+def _plain(index: int, name: str, value: object) -> dict[str, object]:
+    if not isinstance(value, Mapping):
+        raise InvalidTrack(f"keyframe {index}: {name} is {value!r}; expected an object")
+    return {str(key): each for key, each in value.items()}
+
+
 def _numbers(
     index: int, name: str, value: object, letters: Mapping[str, float]
 ) -> dict[str, float]:
-    if not isinstance(value, Mapping):
-        raise InvalidTrack(f"keyframe {index}: {name} is {value!r}; expected an object")
-    items: Iterable[tuple[object, object]] = value.items()
-    return {str(key): _intensity(index, f"{name}.{key}", number, letters) for key, number in items}
+    items = _plain(index, name, value).items()
+    return {key: _intensity(index, f"{name}.{key}", number, letters) for key, number in items}
 
 
 def _intensity(index: int, name: str, value: object, letters: Mapping[str, float]) -> float:

@@ -269,7 +269,8 @@ class Writers:
                 whole.axes[name, axis] = each.value
             elif kind == "expression":
                 whole.expression = True
-                whole.emotion = self._held[layer][each.owner].emotion
+                felt = self._held[layer][each.owner]
+                whole.emotion, whole.plays = felt.emotion, felt.plays
         # In the order in which they came up: a lip of one writer parts a unit of another.
         sides: dict[int, dict[tuple[str, str], float]] = {}
         for thing, each in heard.items():
@@ -302,6 +303,7 @@ class Writers:
                     tongue=part.axes_of("tongue"),
                     emotion=part.emotion,
                     expression=part.expression,
+                    plays=part.plays,
                     hold=left,
                     fade_out=held.fade_out / TICKS_PER_SECOND,
                     weight=held.weight,
@@ -352,7 +354,9 @@ def _plain(held: Held) -> dict[str, object]:
     for group in GROUPS:
         if axes := held.axes_of(group):
             report[group] = axes
-    if held.emotion is not None:
+    if held.plays:
+        report["emotion"] = dict(held.plays)
+    elif held.emotion is not None:
         report["emotion"] = {"label": held.emotion[0], "intensity": held.emotion[1]}
     return report
 

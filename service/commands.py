@@ -151,6 +151,7 @@ def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig, turns: Turns
         keyframe,
         emotion=played.emotion,
         expression=played.expression,
+        plays=played.plays,
         action_units={**played.action_units, **keyframe.action_units},
         fade=body.reached if body.names_fade else played.fade,
         **{name: getattr(played, name) for name in _OF_BOTH if name not in given},

@@ -88,6 +88,7 @@ def play_emotion(command: EmotionCommand, rig: Rig, turns: Turns) -> Played:
         ttl=command.ttl,
         fade_out=command.fade_out,
         weight=command.weight,
+        plays=_plays(resolved, command.intensity),
     )
     name = _measured(resolved, rig)
     if name is not None:
@@ -95,6 +96,21 @@ def play_emotion(command: EmotionCommand, rig: Rig, turns: Turns) -> Played:
     else:
         keyframe = replace(keyframe, action_units=units, expression=True)
     return Played(keyframe, resolved, units)
+
+
+def _plays(resolved: Resolved, intensity: float) -> dict[str, object]:
+    """Return what a session tells of an emotion for as long as it is held."""
+    return {
+        "label": resolved.label or None,
+        "intensity": intensity,
+        "vocabulary": resolved.vocabulary or None,
+        "found": resolved.found,
+        "recipe": resolved.facs,
+        "parts": [
+            {"recipe": part.recipe, "weight": round(part.weight, 4), "variant": part.variant}
+            for part in resolved.parts
+        ],
+    }
 
 
 def _check(command: EmotionCommand) -> None:

@@ -82,7 +82,7 @@ class WriterState(BaseModel):
 
     owner: str
     facs: str
-    emotion: str | None
+    emotion: str | None = Field(description="The emotion that it plays, or what it mixes.")
     expires_in: float | None = Field(description="Seconds until it lets go; null if it stays.")
 
 

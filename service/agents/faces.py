@@ -119,12 +119,19 @@ def _layer(name: Any, held: Mapping[str, Any]) -> LayerState:
             WriterState(
                 owner=writer["owner"],
                 facs=written(writer["action_units"]),
-                emotion=writer["emotion"]["label"] if "emotion" in writer else None,
+                emotion=_named(writer["emotion"]) if "emotion" in writer else None,
                 expires_in=writer["expires_in"],
             )
             for writer in held["writers"]
         ],
     )
+
+
+def _named(emotion: Mapping[str, Any]) -> str:
+    """Return an emotion's label, or what is mixed: "0.6 happiness + 0.3 surprise"."""
+    if emotion["label"] is not None:
+        return str(emotion["label"])
+    return " + ".join(f"{part['weight']:.2g} {part['recipe']}" for part in emotion["parts"])
 
 
 def _held_by(session: Session, owner: str, tick: int) -> dict[str, float]:

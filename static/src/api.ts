@@ -1,5 +1,6 @@
 // REST calls of the viewer, and the addresses it links to.
 
+import type { FaceState } from './protocol';
 import type { AttributeInfo, Recipe } from './recipe';
 import { withTicket } from './ticket';
 
@@ -48,10 +49,19 @@ export interface People {
   attributes?: Record<string, AttributeInfo>;
 }
 
-export interface SessionInfo {
+export interface SessionInfo extends FaceState {
   id: string;
   rig: string;
+  rig_name?: string;
+  /** Forms of the physics, such as its integrator. */
+  model?: Record<string, unknown>;
   stream?: string;
+  surface?: string;
+  tick?: number;
+  asleep?: boolean;
+  viewers?: number;
+  /** Seconds since 1970. */
+  created?: number;
 }
 
 /** An answer other than 2xx. `status` is 0 when there was no answer at all. */

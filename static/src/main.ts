@@ -15,6 +15,7 @@ import Panels from './panels/Panels.svelte';
 import People from './panels/People.svelte';
 import StatusBar from './panels/StatusBar.svelte';
 import type { FaceState, Hello } from './protocol';
+import { expressionOf } from './protocol';
 import { Scene } from './scene';
 import type { Actions } from './state/actions';
 import { fetching, painting, starting } from './state/loading';
@@ -240,7 +241,7 @@ function takeState(state: FaceState): void {
   if (!commands.handsOff) return;
   viewer.sliders.take(state.layers?.puppet ?? {});
   const emotion = state.layers?.emotion?.emotion;
-  viewer.emotion = emotion?.label ?? '';
+  viewer.emotion = expressionOf(emotion);
   if (emotion !== undefined) viewer.emotionIntensity = emotion.intensity;
 }
 

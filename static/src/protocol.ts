@@ -129,7 +129,19 @@ function readBitmap(bitmap: Uint8Array, vertexCount: number, movedCount: number)
 
 export type Numbers = Record<string, number>;
 
-/** What a layer holds, or what all layers come to together. */
+/** What plays as an emotion: a label, or the mixture of scores or coordinates. */
+export interface Played {
+  /** Null for a mixture. */
+  label: string | null;
+  intensity: number;
+  vocabulary?: string | null;
+  found?: string;
+  /** FACS at intensity 1. */
+  recipe?: string;
+  parts?: { recipe: string; weight: number; variant: number }[];
+}
+
+/** What somebody holds of a face. */
 export interface Held {
   action_units?: Numbers;
   muscles?: Numbers;
@@ -137,12 +149,46 @@ export interface Held {
   gaze?: Numbers;
   head?: Numbers;
   tongue?: Numbers;
-  emotion?: { label: string; intensity: number };
+  /** How much of what lies beneath is overridden, 0 to 1. */
+  weight?: number;
+  emotion?: Played;
+}
+
+/** What one owner holds in a layer. */
+export interface Writer extends Held {
+  owner: string;
+  /** Tick since which it has held anything. */
+  since: number;
+  /** Seconds that are left of its lease; null if it stays. */
+  expires_in: number | null;
+}
+
+/** What a layer comes to, and of whom: the one that came to the top last is at the end. */
+export interface HeldLayer extends Held {
+  writers?: Writer[];
+}
+
+/** What all layers come to together. */
+export interface Merged extends Held {
+  /** The action units as a FACS string. */
+  facs?: string;
+  /** How its letters are to be read. */
+  scale?: 'linear' | 'banded';
+  /** For each thing that is held the layers that hold it, lowest first. */
+  writers?: Record<string, Layer[]>;
+  /** The same with whose it is there. */
+  owners?: Record<string, { layer: Layer; owner: string }[]>;
 }
 
 export interface FaceState {
-  layers?: Record<string, Held>;
-  merged?: Held;
+  layers?: Partial<Record<Layer, HeldLayer>>;
+  merged?: Merged;
+}
+
+/** The one expression that plays, by the name that a rig's emotion has too; empty for a mixture. */
+export function expressionOf(played: Played | undefined): string {
+  const [only, ...more] = played?.parts ?? [];
+  return only !== undefined && more.length === 0 ? only.recipe : (played?.label ?? '');
 }
 
 export interface Hello {

@@ -7,6 +7,7 @@ import {
   controlsCommand,
   decodeFrame,
   emotionCommand,
+  expressionOf,
   ProtocolError,
   readMessage,
   replaceCommand,
@@ -114,6 +115,16 @@ describe('text messages', () => {
       fade_in: 0.25,
       seed: 0,
     });
+  });
+
+  it('names the one expression that plays, in whatever words it was asked for', () => {
+    const joy = { label: 'joy', intensity: 1 };
+    const happiness = { recipe: 'happiness', weight: 1, variant: 2 };
+    const surprise = { recipe: 'surprise', weight: 0.4, variant: 0 };
+    expect(expressionOf({ ...joy, parts: [happiness] })).toBe('happiness');
+    expect(expressionOf(joy)).toBe('joy');
+    expect(expressionOf({ ...joy, label: null, parts: [happiness, surprise] })).toBe('');
+    expect(expressionOf(undefined)).toBe('');
   });
 
   it('leaves alone what it does not know', () => {

@@ -11,6 +11,7 @@ GOOD = {
         {"time": 1.0, "emotion": {"label": "joy", "intensity": 0.8}, "fade": 0.2, "hold": 1.5},
         {"time": 0.0, "action_units": {"AU12": 0.5, "L4": "B"}, "jaw": {"pitch": 3}},
         {"time": 2.0, "facs": "1C+2C", "layer": "speech", "replace": True},
+        {"time": 3.0, "facs": "12C", "expression": True, "plays": {"label": "joy", "parts": []}},
     ],
     "duration": 4,
 }
@@ -18,11 +19,12 @@ GOOD = {
 
 def test_keyframes_come_out_in_order_of_time():
     timeline = Timeline.from_json(GOOD)
-    assert [k.time for k in timeline.keyframes] == [0.0, 1.0, 2.0]
+    assert [k.time for k in timeline.keyframes] == [0.0, 1.0, 2.0, 3.0]
     assert timeline.keyframes[0].action_units == {"AU12": 0.5, "L4": 0.4}
     assert timeline.keyframes[1].layer == "emotion"
     assert timeline.keyframes[1].emotion == ("joy", 0.8)
     assert timeline.keyframes[2].action_units == {"AU1": 0.6, "AU2": 0.6}
+    assert timeline.keyframes[3].plays == {"label": "joy", "parts": []}
     assert timeline.duration == 4.0
 
 
@@ -55,6 +57,7 @@ def test_without_a_duration_it_lasts_a_second_longer_than_it_plays():
         ({"timeline": [{"layer": "top"}]}, "layer is 'top'"),
         ({"timeline": [{"action_units": {"AU1": True}}]}, "AU1 is True"),
         ({"timeline": [{"emotion": 5}]}, "emotion is 5"),
+        ({"timeline": [{"plays": 5}]}, "plays is 5"),
         ({"timeline": [{"time": 10**400}]}, "keyframe 0: time"),
         ({"timeline": [{"time": 0}, {"facs": "12Z"}]}, "keyframe 1: facs"),
         ({"timeline": [{"scale": "log"}]}, "keyframe 0: .*'log'"),

@@ -35,6 +35,7 @@ WRITES = st.builds(
     muscles=st.dictionaries(st.just("mentalis.L"), st.sampled_from([0.0, 0.4]), max_size=1),
     emotion=st.none() | st.just(("happiness", 0.5)),
     expression=st.booleans(),
+    plays=st.sampled_from([{}, {"label": "joy"}]),
     weight=st.sampled_from([0.5, 1.0]),
     hold=st.none() | st.just(1.0),
     ttl=st.none() | st.just(2.0),
@@ -173,6 +174,19 @@ def test_an_expression_without_a_name_covers_as_well() -> None:
     first = Keyframe(owner="a", action_units={"AU15": 0.6})
     second = Keyframe(owner="b", action_units={"AU12": 0.5}, expression=True)
     assert units(after((0, first), (1, second)), 2) == {"AU12": 0.5}
+
+
+def test_what_an_expression_plays_is_told_until_the_next_one() -> None:
+    mix = {"label": None, "parts": [{"recipe": "joy"}, {"recipe": "surprise"}]}
+    first = Keyframe(owner="a", action_units={"AU12": 0.6}, expression=True, plays=mix)
+    more = Keyframe(owner="a", action_units={"AU1": 0.2})
+    assert told(after((0, first), (1, more)), 2)["emotion"] == mix
+    nameless = Keyframe(owner="a", action_units={"AU12": 0.6}, expression=True)
+    assert "emotion" not in told(after((0, first), (1, nameless)), 2)
+    rest = Keyframe(owner="b", expression=True, plays={"label": "neutral"})
+    covered = after((0, first), (1, rest))
+    assert told(covered, 2)["emotion"] == {"label": "neutral"}
+    assert units(covered, 2) == {}
 
 
 def test_one_lip_of_a_writer_parts_the_unit_of_another() -> None:

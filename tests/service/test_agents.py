@@ -169,6 +169,7 @@ async def test_a_mixture_with_a_hold_passes_by_itself(url: str) -> None:
         assert played["found"] == "scores"
         (layer,) = (await call(client, "get_state", session_id=face))["layers"]
         assert layer["writers"][0]["expires_in"] > 0
+        assert layer["writers"][0]["emotion"] == "0.6 happiness + 0.4 surprise"
         deadline = time.monotonic() + 30
         while (await call(client, "get_state", session_id=face))["layers"]:
             assert time.monotonic() < deadline

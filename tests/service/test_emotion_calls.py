@@ -56,7 +56,38 @@ def test_a_variant_is_held_as_plain_units(client: TestClient, session: str) -> N
     played = play(client, session, label="joy", seed=1, intensity=0.5, fade_in=0.0)
     held = client.get(f"/api/sessions/{session}").json()["layers"]["emotion"]
     assert held["action_units"] == pytest.approx(played["action_units"])
-    assert "emotion" not in held
+    assert held["emotion"]["parts"] == [
+        {"recipe": "happiness", "weight": 1.0, "variant": RECIPES["happiness"].turn(1)}
+    ]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"label": "joy"},
+        {"label": "joyful", "seed": 1, "vocabulary": "goemotions"},
+        {"scores": [{"label": "joy", "score": 0.6}, {"label": "surprise", "score": 0.3}]},
+        {"valence": 0.4, "arousal": 0.6},
+        {"label": "neutral"},
+    ],
+)
+def test_a_session_names_what_plays_as_it_was_answered(
+    client: TestClient, session: str, body: dict[str, Any]
+) -> None:
+    played = play(client, session, **body, intensity=0.5, owner="agent")
+    client.patch(
+        f"/api/sessions/{session}/controls",
+        json={"layer": "emotion", "owner": "agent", "action_units": {"AU1": 0.2}},
+    )
+    (writer,) = client.get(f"/api/sessions/{session}").json()["layers"]["emotion"]["writers"]
+    told = writer["emotion"]
+    assert told["intensity"] == 0.5
+    for name in ("label", "vocabulary", "found", "recipe"):
+        assert told[name] == played[name]
+    shares = [{name: part[name] for name in told["parts"][0]} for part in played["parts"]]
+    assert told["parts"] == shares
+    client.put(f"/api/sessions/{session}/controls", json={"layer": "emotion", "facs": "1C"})
+    assert "emotion" not in client.get(f"/api/sessions/{session}").json()["layers"]["emotion"]
 
 
 def test_coordinates_play_the_face_between(client: TestClient, session: str) -> None:

@@ -25,6 +25,8 @@ COMMANDS = st.builds(
     action_units=UNITS,
     jaw=st.dictionaries(st.just("pitch"), st.sampled_from([0.0, 5.0]), max_size=1),
     emotion=st.none() | st.just(("happiness", 0.5)),
+    expression=st.booleans(),
+    plays=st.sampled_from([{}, {"label": "joy", "parts": [{"recipe": "happiness"}]}]),
     weight=st.sampled_from([0.5, 1.0]),
     ttl=st.none() | st.just(3.0),
     replace=st.booleans(),

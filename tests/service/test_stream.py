@@ -94,7 +94,7 @@ def test_an_emotion_over_the_socket_is_played(client: TestClient, session: str) 
         state = events_until(socket, "state")
         while "emotion" not in state["layers"]:
             state = events_until(socket, "state")
-        assert state["layers"]["emotion"]["emotion"]["label"] == "happiness"
+        assert state["layers"]["emotion"]["emotion"]["label"] == "joy"
 
 
 def test_a_sleeping_face_is_repeated_each_second(client: TestClient, session: str) -> None:

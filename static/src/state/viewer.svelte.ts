@@ -1,6 +1,6 @@
 // Everything the panels show, as one reactive object.
 
-import type { Held, Numbers } from '../protocol';
+import type { Held, Merged, Numbers } from '../protocol';
 import type { Group } from './actions';
 import type { AttributeInfo, Recipe } from '../recipe';
 import type { Step } from './loading';
@@ -70,7 +70,7 @@ export class ViewerState {
   emotionIntensity = $state(1);
   view = $state('front');
   /** What all layers come to together, also those that others write. */
-  merged = $state.raw<Held>({});
+  merged = $state.raw<Merged>({});
   sliders = new Sliders();
   /** Tissue and muscle numbers that were edited here, by `dermis.stiffness_low` or `muscle.force_scale`. */
   edits = $state<Numbers>({});
