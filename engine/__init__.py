@@ -45,7 +45,14 @@ from .facs import (
 )
 from .flesh import Flesh, examine, jolts, path_dependence, random_mixes
 from .frame import Frame, Pose
-from .gltf import clip_to_glb, face_to_glb, rig_to_glb, surface_to_glb, targets_to_glb
+from .gltf import (
+    arkit_to_glb,
+    clip_to_glb,
+    face_to_glb,
+    rig_to_glb,
+    surface_to_glb,
+    targets_to_glb,
+)
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .head.textures import head_textures
 from .held import hold_units, recipe_of, unit_key
@@ -66,7 +73,7 @@ from .rig import (
     rig_from_recipe,
 )
 from .separability import ALIKE, MOST_ALIKE, Separability, separability
-from .settling import settled, settled_units
+from .settling import settled, settled_arkit, settled_units
 from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .speech import LEAD, LETS_GO, SPEAKER, Cue, cues_of, speech_keyframes
@@ -164,6 +171,7 @@ __all__ = [
     "arkit_blend",
     "arkit_shapes",
     "arkit_table",
+    "arkit_to_glb",
     "blend",
     "broken_rules",
     "builtin_rig",
@@ -206,6 +214,7 @@ __all__ = [
     "search_for",
     "separability",
     "settled",
+    "settled_arkit",
     "settled_units",
     "speech_keyframes",
     "split_name",

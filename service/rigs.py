@@ -25,6 +25,8 @@ from engine import (
     Recipe,
     Rig,
     UnknownName,
+    arkit_table,
+    arkit_to_glb,
     builtin_rig,
     keep,
     people,
@@ -59,6 +61,10 @@ _ID = re.compile("[0-9a-f]{16}")
 
 FULL = "high"
 """The level of detail of what is asked for without one."""
+UNITS = "facs"
+"""The names of what is asked for with action units as morph targets."""
+TARGETS = {UNITS: rig_to_glb, "arkit": arkit_to_glb}
+"""What writes the rest head with morph targets, by their names."""
 _TITLES = {
     "standard": "the built-in head",
     "paper": "the paper's own mesh and constants, for comparison",
@@ -84,6 +90,18 @@ def export_tag(rig: Rig, level: str, *, textured: bool) -> str:
     """
     tag = tag_of(rig, level)
     return tag if textured or not texture_names(rig) else f"{tag}-bare"
+
+
+def targets_tag(rig: Rig, level: str, names: str, *, textured: bool) -> str:
+    """Return what names a file of a rig with morph targets.
+
+    Raises:
+        Unprocessable: If there is no such level, or nothing has those names.
+    """
+    tag = export_tag(rig, level, textured=textured)
+    if names not in TARGETS:
+        raise refused_by_engine(UnknownName("vocabulary", names, TARGETS))
+    return tag if names == UNITS else f"{tag}-{names}-{arkit_table().version}"
 
 
 def _person_key(rig: Rig) -> str:
@@ -234,12 +252,15 @@ class Rigs:
             lines.append({"id": row.id, "name": name, "base": row.base})
         return lines
 
-    async def glb(self, rig: Rig, level: str = FULL, *, textured: bool = True) -> bytes:
-        """Return the rest head with its action units as morph targets."""
+    async def glb(
+        self, rig: Rig, level: str = FULL, *, textured: bool = True, names: str = UNITS
+    ) -> bytes:
+        """Return the rest head with morph targets, of the `names` that `TARGETS` has."""
+        write = TARGETS[names]
         return await self.export(
             rig,
-            f"rig-{export_tag(rig, level, textured=textured)}",
-            lambda maps: rig_to_glb(rig.at_level(level), textures=maps),
+            f"rig-{targets_tag(rig, level, names, textured=textured)}",
+            lambda maps: write(rig.at_level(level), textures=maps),
             textured=textured,
         )
 

@@ -2,7 +2,14 @@
 
 from .clip import clip_to_glb
 from .face import face_to_glb
-from .rig import rig_to_glb, targets_to_glb
+from .rig import arkit_to_glb, rig_to_glb, targets_to_glb
 from .surface import surface_to_glb
 
-__all__ = ["clip_to_glb", "face_to_glb", "rig_to_glb", "surface_to_glb", "targets_to_glb"]
+__all__ = [
+    "arkit_to_glb",
+    "clip_to_glb",
+    "face_to_glb",
+    "rig_to_glb",
+    "surface_to_glb",
+    "targets_to_glb",
+]

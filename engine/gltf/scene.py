@@ -78,16 +78,16 @@ def add_pivot(
 
 
 def add_rigid_parts(
-    builder: GlbBuilder, head: Head, pivots: Mapping[str, Pivot], *, skip: str | None = None
+    builder: GlbBuilder, head: Head, pivots: Mapping[str, Pivot], *, skip: Sequence[str] = ()
 ) -> dict[str, int]:
     """Add the parts that move with a bone or an eye, relative to their pivots; return the nodes.
 
-    Those that follow `skip` are left out, for a caller that has more to say about them. The tongue
-    has a morph target, by which it is put out.
+    Those that follow a pivot in `skip` are left out, for a caller that has more to say about them.
+    The tongue has a morph target, by which it is put out.
     """
     nodes = {}
     for part in rigid_parts(head):
-        if part.follows == skip:
+        if part.follows in skip:
             continue
         pivot = pivots[part.follows]
         attributes = part_attributes(part, origin=pivot.origin)

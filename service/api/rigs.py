@@ -11,8 +11,8 @@ from engine import EngineError, Keyframe, Rig, face_to_glb, parse_facs, print_fa
 
 from ..bodies import NewRig, Scale
 from ..components import Parts
-from ..errors import Unprocessable, refused_by_engine
-from ..rigs import FULL, export_tag, tag_of
+from ..errors import refused_by_engine
+from ..rigs import FULL, UNITS, export_tag, tag_of, targets_tag
 from .answers import TAGGED, GlbResponse, Textured, client_has, tagged_glb
 
 router = APIRouter(prefix="/api/rigs", tags=["rigs"])
@@ -43,18 +43,18 @@ async def rig_glb(
     rig: str,
     parts: Parts,
     request: Request,
-    names: Annotated[str, Query(max_length=16)] = "facs",
+    names: Annotated[
+        str, Query(max_length=16, description="Of the morph targets: facs, or arkit.")
+    ] = UNITS,
     level: LevelOfDetail = FULL,
     textured: Textured = True,
 ) -> Response:
-    """Return the rest head with its action units as morph targets."""
-    if names != "facs":
-        raise Unprocessable("not_available", "names is 'facs'; 'arkit' is not available yet")
+    """Return the rest head with its action units, or ARKit's shapes, as morph targets."""
     found = await parts.rigs.get(rig)
-    tag = export_tag(found, level, textured=textured)
+    tag = targets_tag(found, level, names, textured=textured)
     if client_has(request, tag):
         return tagged_glb(request, b"", tag)
-    data = await parts.rigs.glb(found, level, textured=textured)
+    data = await parts.rigs.glb(found, level, textured=textured, names=names)
     return tagged_glb(request, data, tag)
 
 

@@ -91,10 +91,22 @@ def test_the_surface_is_tagged_by_the_rig(client: TestClient) -> None:
     assert client.get("/api/rigs/standard/surface.glb").headers["ETag"] == f'"{rig}"'
 
 
-def test_arkit_names_are_not_available_yet(client: TestClient) -> None:
-    answer = client.get("/api/rigs/standard.glb", params={"names": "arkit"})
-    assert answer.status_code == 422
-    assert answer.json()["error"] == "not_available"
+def test_a_rig_s_file_has_arkit_s_shapes_as_targets(client: TestClient) -> None:
+    asked = {"names": "arkit", "level": "low", "textures": "0"}
+    answer = client.get("/api/rigs/standard.glb", params=asked)
+    assert answer.status_code == 200, answer.text
+    described = glb_json(answer.content)
+    shapes = [*client.get("/api/maps/arkit").json()["shapes"]]
+    meshes = {mesh["name"]: mesh for mesh in described["meshes"]}  # type: ignore[attr-defined]
+    for name in ("skin", "teeth.lower", "tongue", "eye.L", "eye.R"):
+        assert meshes[name]["extras"]["targetNames"] == shapes
+    units = client.get("/api/rigs/standard.glb", params={"level": "low", "textures": "0"})
+    assert units.headers["ETag"] != answer.headers["ETag"]
+    tag = {"If-None-Match": answer.headers["ETag"]}
+    assert client.get("/api/rigs/standard.glb", params=asked, headers=tag).status_code == 304
+    refused = client.get("/api/rigs/standard.glb", params={"names": "arkti"})
+    assert (refused.status_code, refused.json()["error"]) == (422, "unknown_vocabulary")
+    assert "did you mean arkit" in refused.json()["message"]
 
 
 @pytest.mark.parametrize("path", ["zzz", "zzz.glb", "zzz/surface.glb", "zzz/expressions/12C.glb"])
