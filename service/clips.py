@@ -263,6 +263,8 @@ class Clips:
         timeline, warnings = clip_timeline(clip, rig)
         if timeline.duration > self._max_seconds:
             message = f"the clip lasts {timeline.duration:g} s; at most {self._max_seconds:g} s"
+            if clip.start:
+                message += f", with the {clip.start:g} s that are played before it begins"
             raise Unprocessable("clip_too_long", message)
         return timeline, warnings
 

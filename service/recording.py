@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
@@ -10,12 +11,25 @@ from engine import TICKS_PER_SECOND, Keyframe, Model, Rig, Writers
 
 from .bodies import KeyframeBody, NewClip
 from .errors import Conflict
-from .sessions import Command
+from .sessions import Command, Session, Sessions
 
 LEAD_SECONDS = 2.0
 """Played before what is kept, so that the face has come to where it was: longer than any lag."""
 _MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head", "tongue")
 _PLAIN = ("layer", "owner", "fade", "hold", "ttl", "fade_out", "weight", "replace", "expression")
+
+
+async def record_last(sessions: Sessions, session: Session, *, last: float, fps: int) -> NewClip:
+    """Return the last seconds of a session as a clip, as `recorded_clip` does, in a thread.
+
+    Raises:
+        Conflict: If nothing was ever set on the face.
+    """
+    view = await sessions.view(session)
+    commands, rig, model = list(session.commands), session.rig, session.model
+    return await asyncio.to_thread(
+        recorded_clip, commands, rig, model, now=view.frame.tick, last=last, fps=fps
+    )
 
 
 def recorded_clip(

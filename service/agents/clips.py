@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from ..bodies import Controls, EmotionCommand, KeyframeBody, NewClip
 from ..components import Components
 from ..errors import Refused, Unprocessable
-from ..recording import recorded_clip
+from ..recording import record_last
 from ..store import ClipRow
 from .answered import ExportedClip
 from .asked import Beat, ExportClip
@@ -36,17 +34,7 @@ async def export_clip(asked: ExportClip, parts: Components, caller: Caller) -> E
 async def _clip(asked: ExportClip, parts: Components, caller: Caller) -> NewClip:
     if asked.session_id is not None:
         session = await parts.sessions.get(asked.session_id)
-        view = await parts.sessions.view(session)
-        commands, rig, model = list(session.commands), session.rig, session.model
-        return await asyncio.to_thread(
-            recorded_clip,
-            commands,
-            rig,
-            model,
-            now=view.frame.tick,
-            last=asked.last,
-            fps=asked.fps,
-        )
+        return await record_last(parts.sessions, session, last=asked.last, fps=asked.fps)
     beats = sorted(asked.timeline or [], key=lambda beat: beat.time)
     return NewClip(
         rig=asked.rig,

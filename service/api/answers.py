@@ -66,6 +66,10 @@ Textured = Annotated[
     bool, Query(alias="textures", description="Whether the maps of skin and eyes are embedded.")
 ]
 
+LevelOfDetail = Annotated[
+    str, Query(max_length=16, description="Detail of the drawn skin: low, medium or high.")
+]
+
 
 class GlbResponse(Response):
     """A GLB file."""

@@ -13,12 +13,9 @@ from ..bodies import NewRig, Scale
 from ..components import Parts
 from ..errors import refused_by_engine
 from ..rigs import FULL, UNITS, export_tag, tag_of, targets_tag
-from .answers import TAGGED, GlbResponse, Textured, client_has, tagged_glb
+from .answers import TAGGED, GlbResponse, LevelOfDetail, Textured, client_has, tagged_glb
 
 router = APIRouter(prefix="/api/rigs", tags=["rigs"])
-LevelOfDetail = Annotated[
-    str, Query(max_length=16, description="Detail of the drawn skin: low, medium or high.")
-]
 
 
 @router.get("")

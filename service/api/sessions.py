@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
@@ -20,13 +21,19 @@ from ..bodies import (
 from ..commands import controls_keyframe, live_model
 from ..components import Components, Parts
 from ..emotions import play_emotion
-from ..errors import refused_by_engine
+from ..errors import Conflict, json_response, refused_by_engine
 from ..facs import with_facs
+from ..recording import record_last
+from ..rigs import FULL, tag_of
 from ..sessions import Session
 from ..speech import silence, spoken
-from .answers import AT_CAPACITY, GLB_CONTENT, GlbResponse, Textured
+from .answers import AT_CAPACITY, GLB_CONTENT, GlbResponse, LevelOfDetail, Textured
 
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
+RECORDED: dict[int | str, dict[str, Any]] = {
+    **GLB_CONTENT,
+    202: {"description": "It is still being rendered; Location says where the clip will be."},
+}
 
 
 @router.post("", status_code=201, responses=AT_CAPACITY)
@@ -52,6 +59,41 @@ async def session_glb(session_id: str, parts: Parts, textured: Textured = True) 
     rig = session.rig
     maps = await parts.rigs.textures(rig) if textured else None
     data = await parts.rigs.written(lambda: face_to_glb(rig, view.frame, textures=maps))
+    return GlbResponse(data, headers={"Cache-Control": "no-store"})
+
+
+@router.get("/{session_id}/recording.glb", responses=RECORDED, response_class=GlbResponse)
+async def recording_glb(
+    session_id: str,
+    parts: Parts,
+    last: Annotated[
+        float, Query(gt=0, le=3600, allow_inf_nan=False, description="Seconds to record.")
+    ] = 10.0,
+    fps: Annotated[int, Query(ge=1, le=60, description="Frames a second.")] = 30,
+    level: LevelOfDetail = FULL,
+    textured: Textured = True,
+    wait: Annotated[
+        float, Query(ge=0, le=60, allow_inf_nan=False, description="Most seconds to wait.")
+    ] = 60.0,
+) -> Response:
+    """Return what the face did last as an animation: its commands again, rendered as a clip is.
+
+    The clip is forgotten once it has been answered; one that is not done in time is kept.
+    """
+    session = await parts.sessions.get(session_id)
+    tag_of(session.rig, level)
+    clip = await record_last(parts.sessions, session, last=last, fps=fps)
+    clip = clip.model_copy(update={"level": level, "textures": textured})
+    row = await parts.clips.wait((await parts.clips.submit(clip)).id, wait)
+    if row.status in ("queued", "running"):
+        headers = {"Location": f"/api/clips/{row.id}"}
+        return json_response(parts.clips.describe(row), status=202, headers=headers)
+    done = row.status == "done"
+    data = await asyncio.to_thread(parts.clips.file(row.id, "glb").read_bytes) if done else b""
+    await parts.clips.remove(row.id)
+    if not done:
+        message = row.message or "the recording could not be rendered"
+        raise Conflict(f"clip_{row.status}", message)
     return GlbResponse(data, headers={"Cache-Control": "no-store"})
 
 
