@@ -1,10 +1,12 @@
 """A client of a running service, in plain calls: open a face, move it, read its frames, save clips.
 
-with Client("http://127.0.0.1:8000") as client, client.open_face() as face:
-tick = face.set_emotion("joy")["tick"]
-for frame in face.frames(until_still=True, since=tick):
-print(frame.tick, frame.displacements.shape)
-face.save("joy.glb")
+    with Client("http://127.0.0.1:8000") as client, client.open_face() as face:
+        tick = face.set_emotion("joy")["tick"]
+        for frame in face.frames(until_still=True, since=tick):
+            print(frame.tick, frame.displacements.shape)
+        face.save("joy.glb")
+
+A `with` block closes what it opened.
 """
 
 from __future__ import annotations
@@ -12,17 +14,25 @@ from __future__ import annotations
 import json
 import secrets
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
+from urllib.parse import quote
 
 import httpx2
 from websockets.exceptions import InvalidStatus, WebSocketException
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection, connect
 
+from engine import LETS_GO, SPEAKER
+
+from .client_commands import CommandStream, ended
+from .client_error import ServiceError, refused
 from .protocol import FRAME_VERSION, KIND_SURFACE, SUBPROTOCOL, SurfaceFrame, decode_frame
+
+__all__ = ["DEFAULT_URL", "Client", "CommandStream", "Face", "ServiceError"]
 
 DEFAULT_URL = "http://127.0.0.1:8000"
 _TRIES = 4
@@ -32,22 +42,7 @@ _LONGEST_PAUSE = 10.0
 _TIMEOUT_SECONDS = 120.0
 _CLIP_WAIT_SECONDS = 2.0
 _LARGEST_MESSAGE = 16_000_000
-
-
-class ServiceError(Exception):
-    """What the service refused, in its words.
-
-    Attributes:
-        status: The HTTP status; 0 if there was no answer.
-        error: The error's name: "unknown_emotion".
-        known: The names that would have been accepted, the nearest first.
-    """
-
-    def __init__(self, status: int, error: str, message: str, known: list[str]) -> None:
-        super().__init__(message)
-        self.status = status
-        self.error = error
-        self.known = known
+_ON_ITS_WAY = 202
 
 
 class Client:
@@ -133,18 +128,7 @@ class Client:
             ServiceError: If it cannot be played or rendered.
             OSError: If the file cannot be written.
         """
-        row = self.json("POST", "/api/clips", clip)
-        address = f"/api/clips/{row['id']}"
-        while row["status"] in ("queued", "running"):
-            row = self.json("GET", f"{address}?wait={_CLIP_WAIT_SECONDS:g}")
-            if show is not None:
-                show(row["progress"])
-        if row["status"] != "done":
-            message = row.get("message") or f"the clip is {row['status']}"
-            raise ServiceError(200, f"clip_{row['status']}", message, [])
-        Path(path).write_bytes(self.call("GET", f"{address}.glb").content)
-        report: dict[str, Any] = row["report"]
-        return report
+        return self._finished(self.json("POST", "/api/clips", clip), path, show)
 
     def json(self, method: str, path: str, body: object = None) -> Any:
         """Send a request and return the JSON of its answer, None if it has none.
@@ -174,8 +158,24 @@ class Client:
                 break
             time.sleep(pause)
         if answer.is_error:
-            raise _refused(answer.status_code, answer.content)
+            raise refused(answer.status_code, answer.content)
         return answer
+
+    def _finished(
+        self, row: Mapping[str, Any], path: str | Path, show: Callable[[float], None] | None = None
+    ) -> dict[str, Any]:
+        """Wait for a clip that is being rendered, save its file, and return its report."""
+        address = f"/api/clips/{row['id']}"
+        while row["status"] in ("queued", "running"):
+            row = self.json("GET", f"{address}?wait={_CLIP_WAIT_SECONDS:g}")
+            if show is not None:
+                show(row["progress"])
+        if row["status"] != "done":
+            message = row.get("message") or f"the clip is {row['status']}"
+            raise ServiceError(200, f"clip_{row['status']}", message, [])
+        Path(path).write_bytes(self.call("GET", f"{address}.glb").content)
+        report: dict[str, Any] = row["report"]
+        return report
 
     def _unreachable(self, error: Exception) -> ServiceError:
         message = f"the service at {self.url} does not answer: {error}; is it running there?"
@@ -253,6 +253,31 @@ class Face:
         answer: dict[str, Any] = self.client.json("POST", f"{self._path}/emotions", body)
         return answer
 
+    def speak(self, visemes: Iterable[Mapping[str, Any]], **speech: Any) -> dict[str, Any]:
+        """Play visemes in time; return `sound_in`, seconds until their sound is to begin, and more.
+
+        Args:
+            visemes: `{"viseme": "PP", "time": 0.1}`, or all with `duration`.
+            speech: `owner="voice"`, `intensity=0.5`, `delay=0.2`…
+
+        Raises:
+            ServiceError: For a name that is no viseme, or times that cannot be played.
+        """
+        body = {"visemes": list(visemes), **speech}
+        answer: dict[str, Any] = self.client.json("POST", f"{self._path}/speech", body)
+        return answer
+
+    def be_silent(self, *, owner: str = SPEAKER, fade: float = LETS_GO) -> dict[str, Any]:
+        """End a speech: drop what is still to come, and let go of the mouth; return the `tick`.
+
+        Args:
+            owner: Whose speech it is.
+            fade: Seconds over which the mouth lets go.
+        """
+        asked = f"owner={quote(owner)}&fade={fade:g}"
+        answer: dict[str, Any] = self.client.json("DELETE", f"{self._path}/speech?{asked}")
+        return answer
+
     def state(self) -> dict[str, Any]:
         """Return what its layers hold, and what they make together."""
         answer: dict[str, Any] = self.client.json("GET", self._path)
@@ -271,15 +296,9 @@ class Face:
         Raises:
             ServiceError: If there is no such face, or the service ends.
         """
-        address = f"{self.client.url.replace('http', 'ws', 1)}{self._path}/stream"
-        try:
-            with connect(
-                address,
-                subprotocols=[SUBPROTOCOL],  # type: ignore[list-item]
-                additional_headers=self.client.headers,
-                max_size=_LARGEST_MESSAGE,
-            ) as socket:
-                latest: tuple[int, bool] | None = None
+        with self._connected() as socket:
+            latest: tuple[int, bool] | None = None
+            try:
                 for message in socket:
                     if message[:2] != bytes((KIND_SURFACE, FRAME_VERSION)):
                         continue  # Words, or of a kind that is newer than this client.
@@ -291,13 +310,18 @@ class Face:
                         if until_still and frame.asleep:
                             return
                     socket.send(json.dumps({"type": "ack", "tick": frame.tick}))
-        except InvalidStatus as refused:
-            response = refused.response
-            raise _refused(response.status_code, bytes(response.body or b"")) from refused
-        except WebSocketException as error:
-            raise ServiceError(0, "stream_ended", f"the stream has ended: {error}", []) from error
-        except OSError as error:
-            raise self.client._unreachable(error) from error
+            except WebSocketException as error:
+                raise ended(error) from error
+
+    @contextmanager
+    def commands(self) -> Iterator[CommandStream]:
+        """Open a socket for commands that come many times a second; the `with` block closes it.
+
+        Raises:
+            ServiceError: If there is no such face, or no room for one more socket.
+        """
+        with self._connected() as socket:
+            yield CommandStream(socket)
 
     def save(self, path: str | Path) -> None:
         """Save the face as it stands as a GLB file.
@@ -308,6 +332,25 @@ class Face:
         """
         Path(path).write_bytes(self.client.call("GET", f"{self._path}.glb").content)
 
+    def save_last(self, path: str | Path, seconds: float = 10.0, *, fps: int = 30) -> None:
+        """Save what the face did last as an animated GLB file.
+
+        Args:
+            path: File to write.
+            seconds: How much of it.
+            fps: Frames a second.
+
+        Raises:
+            ServiceError: If there is no such face, or nothing was ever set on it.
+            OSError: If the file cannot be written.
+        """
+        asked = f"last={seconds:g}&fps={fps}"
+        answer = self.client.call("GET", f"{self._path}/recording.glb?{asked}")
+        if answer.status_code == _ON_ITS_WAY:
+            self.client._finished(answer.json(), path)
+        else:
+            Path(path).write_bytes(answer.content)
+
     def close(self) -> None:
         """Close it for good.
 
@@ -315,6 +358,23 @@ class Face:
             ServiceError: If there is no such face.
         """
         self.client.call("DELETE", self._path)
+
+    def _connected(self) -> ClientConnection:
+        """Return an open socket of the face, of which `with` closes it."""
+        try:
+            return connect(
+                f"{self.client.url.replace('http', 'ws', 1)}{self._path}/stream",
+                subprotocols=[SUBPROTOCOL],  # type: ignore[list-item]
+                additional_headers=self.client.headers,
+                max_size=_LARGEST_MESSAGE,
+            )
+        except InvalidStatus as turned_away:
+            response = turned_away.response
+            raise refused(response.status_code, bytes(response.body or b"")) from turned_away
+        except WebSocketException as error:
+            raise ended(error) from error
+        except OSError as error:
+            raise self.client._unreachable(error) from error
 
     @property
     def _path(self) -> str:
@@ -324,12 +384,3 @@ class Face:
 def _pause(retry_after: str) -> float:
     """Return how long to wait [s]; a date, which a proxy may send, is not read."""
     return float(retry_after) if retry_after.isdecimal() else 1.0
-
-
-def _refused(status: int, content: bytes) -> ServiceError:
-    """Return the error in an answer; a proxy's has another shape."""
-    try:
-        body = json.loads(content)
-        return ServiceError(status, body["error"], body["message"], body.get("known") or [])
-    except (ValueError, KeyError, TypeError):
-        return ServiceError(status, "unexpected_answer", f"the service answered {status}", [])

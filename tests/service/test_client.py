@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import settings_in
+from conftest import settings_in, until
 from typer.testing import CliRunner
 
 from engine import builtin_rig, resolve_label
@@ -91,6 +91,46 @@ def test_a_face_and_a_clip_are_saved(service: Client, face: Face, tmp_path: Path
     assert shares[-1] == 1.0
     for name in ("face.glb", "clip.glb"):
         assert (tmp_path / name).read_bytes()[:4] == b"glTF"
+
+
+def test_a_face_speaks_and_is_silent(face: Face) -> None:
+    face.set_emotion("joy", owner="agent")
+    spoken = face.speak([{"viseme": "aa", "duration": 20.0}], owner="voice", intensity=0.5)
+    assert spoken["sound_in"] > 0.0
+    until(lambda: "speech" in face.state()["layers"])
+    face.be_silent(owner="voice")
+    until(lambda: [*face.state()["layers"]] == ["emotion"])
+    with pytest.raises(ServiceError, match="viseme"):
+        face.speak([{"viseme": "zz", "time": 0.0}])
+
+
+def test_commands_follow_each_other_over_a_socket(face: Face) -> None:
+    with face.commands() as commands:
+        for share in range(1, 11):
+            commands.set_controls(arkit={"mouthSmileLeft": share / 10}, owner="phone", ttl=60.0)
+        commands.set_emotion("fear", owner="agent")
+        early = commands.set_controls(arkit={"mouthLeft": 0.5}, owner="phone", replace=True)
+        (warning,) = early or commands.heard(seconds=1.0)
+        assert warning.startswith("mouthLeft")
+        layers = face.state()["layers"]
+        assert layers["emotion"]["emotion"]["label"] == "fear"
+        assert layers["puppet"]["action_units"]["L12"] == pytest.approx(0.15)
+        assert layers["puppet"]["writers"][0]["expires_in"] is None
+        commands.set_controls(arkit={"mouthSmle": 0.5})
+        with pytest.raises(ServiceError, match="mouthSmile") as refused:
+            commands.heard(seconds=5.0)
+        assert refused.value.error == "unknown_arkit_shape"
+    with pytest.raises(ServiceError, match="ended"):
+        commands.set_controls(arkit={"jawOpen": 0.5})
+
+
+def test_what_a_face_did_last_is_saved(face: Face, tmp_path: Path) -> None:
+    with pytest.raises(ServiceError, match="nothing was ever set"):
+        face.save_last(tmp_path / "last.glb")
+    face.set_controls(facs="12E", fade=0.1, ttl=10.0)
+    until(lambda: face.state()["tick"] > 15)
+    face.save_last(tmp_path / "last.glb", 0.2, fps=10)
+    assert (tmp_path / "last.glb").read_bytes()[:4] == b"glTF"
 
 
 def test_what_the_service_refuses_is_raised_in_its_words(face: Face) -> None:
