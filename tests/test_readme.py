@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
 import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 from urllib.error import HTTPError
 
 import pytest
@@ -43,12 +46,13 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield address
 
 
-def shell(script: str, folder: Path) -> str:
+def shell(script: str, folder: Path, variables: Mapping[str, str]) -> str:
     """Run `script` as a person would, and return what it prints."""
     bin_folder = Path(sys.executable).parent
     done = subprocess.run(
         ["bash", "-euc", script.replace(".venv/bin", str(bin_folder))],
         cwd=folder,
+        env={**os.environ, **variables},
         capture_output=True,
         text=True,
         timeout=300,
@@ -58,19 +62,58 @@ def shell(script: str, folder: Path) -> str:
     return done.stdout
 
 
-def test_the_shell_examples_drive_a_face(url: str, tmp_path: Path) -> None:
-    examples = [block for block in blocks("sh") if "curl" in block]
-    assert len(examples) == 3
-    script = "\n".join(examples).replace("localhost:8000", url.removeprefix("http://"))
-    said = shell(script, tmp_path)
-    assert '"recipe"' in said
-    assert (tmp_path / "face.glb").read_bytes()[:4] == b"glTF"
+def first_lines(who: str) -> str:
+    """Return the five lines that README has for a group of people."""
+    (found,) = re.findall(rf"^\*\*{who}[^*\n]*\*\*.*?```sh\n(.*?)```", README, re.S | re.M)
+    assert len(found.splitlines()) <= 5
+    return str(found)
 
 
-def test_the_batch_example_renders_a_clip(tmp_path: Path) -> None:
-    (example,) = [block for block in blocks("sh") if "risorius clip" in block]
-    shell(example, tmp_path)
-    assert (tmp_path / "clip.glb").read_bytes()[:4] == b"glTF"
+def pasted(script: str, url: str, folder: Path) -> str:
+    """Run a script against the service at `url`, with a browser that saves the page it is shown."""
+    browser = {"BROWSER": "curl -s -o page.html %s"}
+    return shell(script.replace("localhost:8000", url.removeprefix("http://")), folder, browser)
+
+
+def test_who_puppeteers_sees_a_face_and_takes_it_home(url: str, tmp_path: Path) -> None:
+    said = pasted(first_lines("You puppeteer in the browser"), url, tmp_path)
+    assert answers(said)[0]["warnings"] == []
+    assert (tmp_path / "page.html").stat().st_size > 0
+    assert (tmp_path / "performance.glb").read_bytes()[:4] == b"glTF"
+
+
+def test_a_chat_agent_posts_what_it_feels(url: str, tmp_path: Path) -> None:
+    said = pasted(first_lines("Your chat agent"), url, tmp_path)
+    (address,) = re.findall(r"watch it: (\S+)", said)
+    assert [played["found"] for played in answers(said)] == ["label", "scores"]
+    session = f"{url}/api/sessions/{address.rpartition('=')[2]}"
+    with urllib.request.urlopen(session, timeout=30) as answer:
+        (writer,) = json.load(answer)["layers"]["emotion"]["writers"]
+    assert [part["recipe"] for part in writer["emotion"]["parts"]] == ["surprise", "happiness"]
+    assert writer["expires_in"] > 10
+
+
+def test_a_batch_job_gets_its_clip(url: str, tmp_path: Path) -> None:
+    pasted(first_lines("Your batch job"), url, tmp_path)
+    data = (tmp_path / "clip.glb").read_bytes()
+    assert data[:4] == b"glTF"
+    assert json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])["animations"]
+
+
+def test_a_person_is_made_by_a_recipe(url: str, tmp_path: Path) -> None:
+    (example,) = [block for block in blocks("sh") if "/api/rigs" in block]
+    said = pasted(example, url, tmp_path)
+    assert answers(said)[0]["recipe"]["age"] == 60
+
+
+def answers(said: str) -> list[dict[str, Any]]:
+    """Return the JSON objects in what a script printed, one after another."""
+    found, start = [], said.find("{")
+    while start >= 0:
+        value, end = json.JSONDecoder().raw_decode(said, start)
+        found.append(value)
+        start = said.find("{", end)
+    return found
 
 
 def test_the_python_example_renders_a_smile(tmp_path: Path) -> None:
