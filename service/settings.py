@@ -66,13 +66,13 @@ class Settings(BaseSettings):
         description="Whether a start without any key makes one, and prints it this once.",
     )
     key_sessions: int = Field(
-        default=64, ge=1, description="Most sessions that one key has open at once."
+        default=128, ge=1, description="Most sessions that one key has open at once."
     )
     key_viewers: int = Field(
-        default=256, ge=1, description="Most sockets open at once on the sessions of one key."
+        default=512, ge=1, description="Most sockets open at once on the sessions of one key."
     )
     key_clip_seconds: float = Field(
-        default=3600.0,
+        default=14_400.0,
         gt=0,
         allow_inf_nan=False,
         description="Most seconds of clips that one key asks for in an hour.",
