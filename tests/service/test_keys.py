@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
+import inspect
 import json
 import logging
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -22,9 +25,12 @@ import service.components
 from service import stream
 from service.agents.tools import TOOLS
 from service.app import create_app
+from service.clips import Clips
 from service.guard import KEY_SUBPROTOCOL
 from service.keys import KeyRefused, add_key, is_loopback, remove_key
+from service.rigs import Rigs
 from service.server import server_of
+from service.sessions import Sessions
 from service.settings import Settings
 from service.store import Store
 
@@ -617,3 +623,28 @@ def test_pages_of_other_origins_are_refused_with_a_key_and_with_a_ticket(keyed: 
     own = keyed.client.get("/api/people", headers={"Origin": LOCAL, **keyed.headers("ada")})
     assert own.status_code == 200
     assert not [name for name in own.headers if name.startswith("access-control")]
+
+
+@pytest.mark.parametrize("part", [Sessions, Clips, Rigs])
+def test_what_somebody_sees_is_a_view_and_no_second_state(part: type) -> None:
+    """A view is a shallow copy: an attribute that is set anew on one is not on the others."""
+    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(part))).body
+    assert isinstance(tree, ast.ClassDef)
+    # Only the service's own, which every view is of, is ever made or started.
+    methods = [
+        node
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and node.name not in ("__init__", "start")
+    ]
+    assert len(methods) > 5
+    rebound = [
+        f"{method.name}: self.{node.attr}"
+        for method in methods
+        for node in ast.walk(method)
+        if isinstance(node, ast.Attribute)
+        and isinstance(node.ctx, ast.Store)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "self"
+    ]
+    assert rebound == []
