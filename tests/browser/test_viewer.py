@@ -174,7 +174,7 @@ def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> 
         assert footer["y"] < height - 30
 
 
-def test_sliders_show_what_an_emotion_plays(page: playwright_api.Page, url: str) -> None:
+def test_panels_show_what_an_emotion_plays(page: playwright_api.Page, url: str) -> None:
     page.goto(url)
     tick = settle(page)
     page.get_by_role("button", name="Contempt").click(force=True)
@@ -187,6 +187,11 @@ def test_sliders_show_what_an_emotion_plays(page: playwright_api.Page, url: str)
     assert line.locator(".played").text_content() == "right E 1.00"
     share = "line => line.querySelector('i').offsetWidth / line.querySelector('input').offsetWidth"
     assert line.evaluate(share) > 0.8
+    session = page.evaluate("() => window.__viewer.session")
+    joy = {"label": "joy", "seed": 1}  # As another client says it, and another form of it.
+    assert page.request.post(f"{url}/api/sessions/{session}/emotions", data=joy).ok
+    happiness = page.get_by_role("button", name="Happiness")
+    playwright_api.expect(happiness).to_have_attribute("aria-pressed", "true")
 
 
 def test_the_paper_s_face_opens(page: playwright_api.Page, url: str, tmp_path: Path) -> None:
