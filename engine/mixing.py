@@ -20,6 +20,7 @@ class Mixer:
         self._rig = rig
         self._writers = Writers(rig)
         self._take(np.zeros((len(LAYERS), 2, 4, rig.channels.count)))
+        self._adds = np.zeros((len(LAYERS), rig.channels.count), bool)
         self._settled_at = 0
         self._merged: FloatArray | None = None
         self._merged_at = 0
@@ -40,7 +41,7 @@ class Mixer:
         """Return the merged command at `tick`, shape (channels,)."""
         self._expire(tick)
         if self._merged is None or self._merged_at <= self._settled_at:
-            self._merged, self._merged_at = merge(self._ramps, tick), tick
+            self._merged, self._merged_at = merge(self._ramps, self._adds, tick), tick
         return self._merged
 
     def changing(self, tick: int) -> bool:
@@ -73,6 +74,7 @@ class Mixer:
         moved = Mixer(rig)
         moved._writers = self._writers.on(rig)
         moved._take(self._ramps.copy())
+        moved._adds = self._adds.copy()
         moved._settled_at = self._settled_at
         for layer in LAYERS:
             moved._retarget(layer, tick, moved._all(0))
@@ -82,6 +84,7 @@ class Mixer:
         twin = Mixer(self._rig)
         twin._writers = self._writers.on(self._rig)
         twin._take(self._ramps.copy())
+        twin._adds = self._adds.copy()
         twin._settled_at = self._settled_at
         return twin
 
@@ -102,7 +105,7 @@ class Mixer:
     def _retarget(self, layer: str, tick: int, fade: FloatArray) -> None:
         """Point the layer's ramps at what it now holds, each channel over its `fade`, ticks."""
         values, shares = self._values[layer], self._shares[layer]
-        target, share, claimed = self._writers.vector(layer)
+        target, share, claimed, touched = self._writers.vector(layer)
         # A channel that nobody claimed takes its value at once and fades in by its share; one
         # that is let go keeps its value and fades out by its share.
         fresh = claimed & (shares.at(tick) == 0.0)
@@ -110,6 +113,9 @@ class Mixer:
         values.length[fresh] = 0.0
         values.move(np.where(claimed, target, values.target), tick, fade)
         shares.move(share, tick, fade)
+        # What is let go goes as it was held.
+        adds = self._adds[LAYERS.index(layer)]
+        adds[claimed] = touched[claimed]
         ramps = (*self._values.values(), *self._shares.values())
         self._settled_at = max(tick, *(ramp.end() for ramp in ramps))
         self._merged = None

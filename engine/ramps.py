@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import BoolArray, FloatArray
 from .compiling import brief
 
 
@@ -33,11 +33,12 @@ def eased(start: float, target: float, begin: float, length: float, tick: int) -
 
 
 @brief
-def merge(ramps: FloatArray, tick: int) -> FloatArray:
+def merge(ramps: FloatArray, adds: BoolArray, tick: int) -> FloatArray:
     """Return what layers come to at `tick`, each over the lower by its share, (channels,).
 
     Args:
         ramps: Shape (layers, 2, 4, channels): of values and of shares, the fields of `Ramp`.
+        adds: Where a layer leaves the lower ones as they are and adds to them, (layers, channels).
         tick: When.
     """
     merged = np.zeros(ramps.shape[3])
@@ -47,7 +48,8 @@ def merge(ramps: FloatArray, tick: int) -> FloatArray:
             weight = eased(share[0, c], share[1, c], share[2, c], share[3, c], tick)
             if weight != 0.0:
                 held = eased(value[0, c], value[1, c], value[2, c], value[3, c], tick)
-                merged[c] = merged[c] * (1.0 - weight) + held * weight
+                below = merged[c] if adds[layer, c] else merged[c] * (1.0 - weight)
+                merged[c] = below + held * weight
     return merged
 
 

@@ -20,6 +20,7 @@ from .held import EXPRESSION, Held, Thing, hold_units, recipe_of, sides_of, unit
 from .onset import fade_lengths
 from .rig import Rig
 from .timeline import ANYONE, LAYERS, TICKS_PER_SECOND, Keyframe, ticks
+from .touches import touched
 
 MOST_WRITERS = 64
 """Writers that a layer has at once, at most."""
@@ -108,8 +109,8 @@ class Writers:
         """Return the action units that count in a layer."""
         return dict(self._whole(layer).action_units)
 
-    def vector(self, layer: str) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """Return what a layer asks of each channel, its share of it, and whether it asks at all.
+    def vector(self, layer: str) -> tuple[FloatArray, FloatArray, BoolArray, BoolArray]:
+        """Return what a layer asks of each channel, its share of it, whether it asks, or only adds.
 
         All of shape (channels,). What several writers move goes by the weight of the last of them.
         """
@@ -124,7 +125,7 @@ class Writers:
         for (_, share), own in () if alone else sorted(groups.items()):
             _, moved = channels_of(self.rig, whole.only(own, self.rig))
             shares[moved & claimed] = share
-        return target, shares, claimed
+        return target, shares, claimed, touched(self.rig, whole)
 
     def on(self, rig: Rig) -> Writers:
         """Return the same writers, with the same holds, on `rig`."""
