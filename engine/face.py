@@ -21,6 +21,8 @@ class FaceState:
         mixer: Its commands.
         tick: Ticks since it was added.
         still_ticks: How long it has been still.
+        quiet_ticks: How long its tissue has been still, and all that moves tissue.
+        resting: Whether that was so long that the tissue is not stepped; eyes and head may go on.
         asleep: Whether it has been still for so long that it is not stepped.
         since: Its simulator's clock when `tick` was last right, for one asleep.
         diverged: Whether it was put back to rest in the last tick.
@@ -40,6 +42,8 @@ class FaceState:
     mixer: Mixer
     tick: int = 0
     still_ticks: int = 0
+    quiet_ticks: int = 0
+    resting: bool = False
     asleep: bool = False
     since: int = 0
     diverged: bool = False

@@ -18,6 +18,7 @@ from .dynamics import Skull
 from .errors import InvalidValue, UnknownName
 from .face import FaceState
 from .frame import Frame, Pose
+from .lag import lagged
 from .mixing import Mixer
 from .rig import Model, Rig
 from .timeline import TICKS_PER_SECOND, Keyframe
@@ -26,7 +27,10 @@ from .together import Together
 STILL_SPEED = 0.2
 """Speed under which the tissue counts as still, mm/s: 3 µm a tick, below the stream's grid."""
 STILL_TICKS = 20
-"""Ticks a face must have been still, and its commands too, before it sleeps."""
+"""Ticks a face must have been still, and its commands too, before it sleeps; and its tissue alone,
+where eyes or head go on."""
+LOOSE = (("gaze", "yaw"), ("gaze", "vergence"), *(("head", axis) for axis in GROUPS["head"]))
+"""Axes that move no tissue: a head turns as a whole, and lids follow the gaze up and down only."""
 FARTHEST_MM = 90.0
 """Displacement that no face reaches: beyond it the simulation has diverged."""
 
@@ -97,6 +101,8 @@ class Simulator:
         together = Together.fits(self.assembly)
         if together and substeps is None:
             self.assembly = calmed(self.assembly)
+        self._tight = np.ones(rig.channels.count, bool)
+        self._tight[[rig.channels.index(*axis) for axis in LOOSE]] = False
         self._faces: dict[str, FaceState] = {}
         self._awake: dict[str, FaceState] = {}
         self._clock = 0
@@ -129,6 +135,7 @@ class Simulator:
             if state.x.shape != self.assembly.tissue.arrays.rest.shape:
                 raise InvalidValue("the state belongs to a head with another number of nodes")
             state.mixer = state.mixer.moved_to(self.rig, state.tick)
+            state.resting, state.quiet_ticks = False, 0
         self._faces[face] = state
         self._wake(face, state)
 
@@ -182,7 +189,8 @@ class Simulator:
         """Advance every face by one tick and return the frames of those that were awake."""
         self._ring()
         awake = dict(self._awake)
-        self._stepper.step(list(awake.values()), self._pool)
+        moving = [state for state in awake.values() if not self._rests(state)]
+        self._stepper.step(moving, self._pool)
         self._clock += 1
         for name, state in awake.items():
             self._judge(name, state)
@@ -237,13 +245,31 @@ class Simulator:
         self._awake[face] = state
 
     def _sleep(self, face: str, state: FaceState) -> None:
-        self._stepper.leave(state)
-        state.v[:] = 0.0
+        self._rest(state)
         state.asleep, state.since = True, self._clock
         del self._awake[face]
         alarm = state.mixer.alarm()
         if alarm is not None:
             heapq.heappush(self._alarms, (self._clock + alarm - state.tick, face))
+
+    def _rest(self, state: FaceState) -> None:
+        self._stepper.leave(state)
+        state.v[:], state.speed = 0.0, 0.0
+        state.resting = True
+
+    def _rests(self, state: FaceState) -> bool:
+        """Move eyes and head of a face whose tissue rests, and wake that when it is to move."""
+        if state.resting:
+            command = state.mixer.at(state.tick)
+            state.resting = not self._tissue_called(state, command)
+            if state.resting:
+                smoothing, stride = self.assembly.smoothing, self.assembly.stride
+                state.signals = lagged(state.signals, command, smoothing, stride)
+        return state.resting
+
+    def _tissue_called(self, state: FaceState, command: FloatArray) -> bool:
+        """Return whether what moves tissue is not where it is asked to be."""
+        return bool(((command != state.signals) & self._tight).any())
 
     def _ring(self) -> None:
         """Wake the sleepers whose hold is over; a face may have gone or woken since."""
@@ -261,17 +287,15 @@ class Simulator:
         if state.lost:
             self._reset(state)
             return
-        if state.speed < STILL_SPEED and not self._signals_move(state):
-            state.still_ticks += 1
-        else:
-            state.still_ticks = 0
+        command = state.mixer.at(state.tick)
+        quiet = state.speed < STILL_SPEED and not self._tissue_called(state, command)
+        arrived = not state.mixer.changing(state.tick) and bool((command == state.signals).all())
+        state.quiet_ticks = state.quiet_ticks + 1 if quiet else 0
+        state.still_ticks = state.still_ticks + 1 if quiet and arrived else 0
         if state.still_ticks >= STILL_TICKS:
             self._sleep(face, state)
-
-    def _signals_move(self, state: FaceState) -> bool:
-        if state.mixer.changing(state.tick):
-            return True
-        return bool((state.mixer.at(state.tick) != state.signals).any())
+        elif state.quiet_ticks >= STILL_TICKS and not state.resting:
+            self._rest(state)
 
     def _reset(self, state: FaceState) -> None:
         """Put a face back to rest with its commands let go; the frame says so."""
@@ -280,6 +304,7 @@ class Simulator:
         state.v[:], state.signals[:] = 0.0, 0.0
         state.mixer = Mixer(self.rig)
         state.targets, state.seen, state.still_ticks = None, None, 0
+        state.resting, state.quiet_ticks = False, 0
 
     def _frame(self, state: FaceState) -> Frame:
         signals, m = state.signals, self.rig.channels.muscle_count

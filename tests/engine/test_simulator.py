@@ -252,3 +252,69 @@ def test_lips_held_between_contacts_fall_asleep(person, unit, integrator):
     for _ in range(120):
         simulator.step()
     assert simulator.frame("a").asleep
+
+
+def stepped(simulator, monkeypatch):
+    """Return a list that tells how many faces' tissue is stepped in each tick from now on."""
+    counts = []
+    step = simulator._stepper.step
+    watched = lambda faces, pool: counts.append(len(faces)) or step(faces, pool)  # noqa: E731
+    monkeypatch.setattr(simulator._stepper, "step", watched)
+    return counts
+
+
+def test_tissue_rests_while_eyes_and_head_go_on(standard_rig, model, monkeypatch):
+    simulator = Simulator(standard_rig, model=model)
+    simulator.add("a")
+    counts = stepped(simulator, monkeypatch)
+    simulator.apply("a", Keyframe(head={"yaw": 20.0}, gaze={"yaw": -5.0}, fade=2.0))
+    frames = [simulator.step()["a"] for _ in range(90)]
+    assert sum(counts) <= 25
+    yaws = [frame.pose.head[0] for frame in frames]
+    assert yaws == sorted(yaws)
+    assert yaws[-1] > 12.0
+    assert not any(frame.asleep for frame in frames)
+    # What moves the tissue wakes it: the lids go with the gaze, up and down.
+    simulator.apply("a", Keyframe(gaze={"pitch": -10.0}))
+    simulator.step()
+    assert counts[-1] == 1
+    for _ in range(10):
+        simulator.step()
+    assert np.abs(simulator.frame("a").displacements).max() > 1.0
+
+
+def test_a_face_whose_tissue_rested_moves_the_same_alone_and_in_a_batch(standard_rig, model):
+    def played(others):
+        simulator = Simulator(standard_rig, model=model, threads=1)
+        for other in range(others):
+            simulator.add(f"other {other}")
+            simulator.apply(f"other {other}", Keyframe(action_units={"AU4": 0.3}))
+        simulator.add("face")
+        simulator.apply("face", Keyframe(head={"yaw": 5.0}, fade=3.0))
+        for _ in range(50):
+            simulator.step()
+        simulator.apply("face", SMILE)
+        for _ in range(8):
+            simulator.step()
+        return simulator.frame("face")
+
+    alone, beside = played(0), played(2)
+    assert np.abs(alone.displacements).max() > 1.0
+    assert np.array_equal(alone.displacements, beside.displacements)
+    assert alone.pose == beside.pose
+
+
+def test_tissue_that_rests_wakes_on_another_rig(standard_rig):
+    simulator = Simulator(standard_rig)
+    simulator.add("a")
+    simulator.apply("a", SMILE)
+    simulator.apply("a", Keyframe(head={"yaw": 5.0}, fade=30.0))
+    for _ in range(120):
+        simulator.step()
+    before = simulator.frame("a").displacements
+    stiffer = standard_rig.derive(tissue={"stiffness_low": {"epidermis": 60.0}})
+    edited = Simulator(stiffer)
+    edited.add("a", state=simulator.remove("a"))
+    for _ in range(40):
+        edited.step()
+    assert np.abs(edited.frame("a").displacements - before).max() > 0.1
