@@ -56,6 +56,7 @@ from .gltf import (
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .head.textures import head_textures
 from .held import hold_units, recipe_of, unit_key
+from .idle import IDLE, MOST_LIFE, Idle, end_of_life, idle_keyframes
 from .inverse import Inverse, Response, invert, question_of, response_of, search_for
 from .jaw import JawHinge
 from .kept import keep, read_kept
@@ -106,6 +107,7 @@ __all__ = [
     "ANYONE",
     "BUILTIN_RIGS",
     "ENGINE_HASH",
+    "IDLE",
     "LANDMARKS",
     "LANDMARKS_68",
     "LAYERS",
@@ -118,6 +120,7 @@ __all__ = [
     "MAX_ACTIVATION",
     "MODEL_CHOICES",
     "MOST_ALIKE",
+    "MOST_LIFE",
     "NEUTRAL",
     "OWNER",
     "PARTED",
@@ -141,6 +144,7 @@ __all__ = [
     "FacsWarning",
     "Flesh",
     "Frame",
+    "Idle",
     "InvalidHead",
     "InvalidNotation",
     "InvalidTrack",
@@ -178,12 +182,14 @@ __all__ = [
     "clip_of",
     "clip_to_glb",
     "cues_of",
+    "end_of_life",
     "examine",
     "face_to_glb",
     "facs_codes",
     "format_facs",
     "head_textures",
     "hold_units",
+    "idle_keyframes",
     "invert",
     "jolts",
     "judge",

@@ -23,7 +23,16 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from engine import ANYONE, LEAD, LETS_GO, MAX_ACTIVATION, OWNER, SPEAKER, usual_layer
+from engine import (
+    ANYONE,
+    LEAD,
+    LETS_GO,
+    MAX_ACTIVATION,
+    MOST_LIFE,
+    OWNER,
+    SPEAKER,
+    usual_layer,
+)
 
 from .explaining import UNKNOWN_FIELD
 
@@ -318,11 +327,43 @@ class ModelChoice(Body):
     sphincter: Literal["ring", "literal"] = "ring"
 
 
+Amount = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=MOST_LIFE)]
+
+
+class IdleLife(Body):
+    """What a face does while nobody asks anything of it; each part times the usual, 0 has none."""
+
+    seed: Annotated[int, Field(strict=True, ge=0, le=_MOST)] | None = Field(
+        default=None,
+        description="Chooses when and where; without it a session takes one and tells it, and a "
+        "clip takes 0.",
+    )
+    blinks: Amount = Field(default=1.0, description="How many blinks.")
+    gaze: Amount = Field(default=1.0, description="How far the eyes go.")
+    head: Amount = Field(default=1.0, description="How far the head sways and goes with glances.")
+    micro: Amount = Field(default=0.3, description="How many brief faint expressions.")
+
+
+def _switched(value: object) -> object:
+    """Read true as a life of which nothing is said, and false as none."""
+    if isinstance(value, bool):
+        return {} if value else None
+    return value
+
+
+Life = Annotated[
+    IdleLife | None,
+    BeforeValidator(_switched, json_schema_input_type=bool | IdleLife | None),
+    Field(description="Idle life: true, or how much of it; none by default."),
+]
+
+
 class NewSession(Body):
     """A session to open."""
 
     rig: Name = "standard"
     model: ModelChoice = ModelChoice()
+    idle: Life = None
 
 
 class Palsy(Body):
@@ -407,6 +448,7 @@ class NewClip(Body):
         description="Seconds of the timeline that are played and left out of the file.",
     )
     model: ModelChoice = ModelChoice()
+    idle: Life = None
 
 
 class ControlsMessage(Controls):
@@ -422,6 +464,13 @@ class EmotionMessage(EmotionCommand):
     type: Literal["emotion"]
 
 
+class IdleMessage(IdleLife):
+    """Idle life over the socket: as PUT, or as DELETE where it is not on."""
+
+    type: Literal["idle"]
+    on: StrictBool = True
+
+
 class AckMessage(Body):
     """The viewer has drawn the frame of this tick."""
 
@@ -429,5 +478,6 @@ class AckMessage(Body):
     tick: Annotated[int, Field(ge=0, le=2**32 - 1)]
 
 
-Message = Annotated[ControlsMessage | EmotionMessage | AckMessage, Field(discriminator="type")]
-MESSAGE: TypeAdapter[ControlsMessage | EmotionMessage | AckMessage] = TypeAdapter(Message)
+Said = ControlsMessage | EmotionMessage | IdleMessage | AckMessage
+Message = Annotated[Said, Field(discriminator="type")]
+MESSAGE: TypeAdapter[Said] = TypeAdapter(Message)

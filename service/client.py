@@ -93,17 +93,20 @@ class Client:
             else:
                 return
 
-    def open_face(self, rig: str = "standard", **model: str) -> Face:
-        """Open a face at rest; a `with` block closes it at its end.
+    def open_face(
+        self, rig: str = "standard", *, idle: bool | Mapping[str, float] = False, **model: str
+    ) -> Face:
+        """Open a face; a `with` block closes it at its end.
 
         Args:
             rig: Whose: "standard", "amara", or the id of a rig.
+            idle: Whether it lives by itself, or how: `{"seed": 7, "blinks": 1.5}`; else it rests.
             model: Forms of the physics, such as `integrator="rk2"`.
 
         Raises:
             ServiceError: If there is no such rig, or no room.
         """
-        body = {"rig": rig, **({"model": model} if model else {})}
+        body = {"rig": rig, "idle": idle, **({"model": model} if model else {})}
         return self.face(self.json("POST", "/api/sessions", body)["id"])
 
     def face(self, session: str) -> Face:

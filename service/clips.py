@@ -20,6 +20,7 @@ from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .explaining import explain
+from .idle import with_life
 from .render_process import Order
 from .renderer import Renderer
 from .rigs import Rigs
@@ -266,7 +267,7 @@ class Clips:
             if clip.start:
                 message += f", with the {clip.start:g} s that are played before it begins"
             raise Unprocessable("clip_too_long", message)
-        return timeline, warnings
+        return with_life(timeline, clip, rig), warnings
 
     def _fail(self, clip: str, message: str) -> None:
         self._store.keep_clip(clip, status="failed", message=message)

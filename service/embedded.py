@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import structlog
@@ -21,14 +22,18 @@ from engine import (
     LONGEST_ONSET,
     EngineError,
     Frame,
+    Idle,
     Keyframe,
     Model,
     Rig,
     Simulator,
     Timeline,
+    end_of_life,
+    idle_keyframes,
 )
 
 from .errors import Busy, NotFound
+from .lives import Lives
 from .load import TICK_SECONDS, Load
 from .mailbox import Mailbox
 from .priority import AWAITED, background_pool
@@ -86,6 +91,7 @@ class _Group:
         awake: Faces that were not asleep after the last tick.
         waiting: Faces, asleep or not, whose commands let go by themselves: ticks until then.
         schedule: Keyframes that are still to come, by `ticks`.
+        lives: What its faces do by themselves, by `ticks`.
         played: Those that took effect and were not told of yet.
         ticks: Ticks stepped.
     """
@@ -96,13 +102,14 @@ class _Group:
     awake: set[str] = field(default_factory=set)
     waiting: dict[str, int] = field(default_factory=dict)
     schedule: Schedule = field(default_factory=Schedule)
+    lives: Lives = field(default_factory=Lives)
     played: list[Played] = field(default_factory=list)
     ticks: int = 0
 
     @property
     def runs(self) -> bool:
         """Whether its time goes on."""
-        return bool(self.awake or self.waiting) or not self.schedule.empty
+        return bool(self.awake or self.waiting) or not (self.schedule.empty and self.lives.empty)
 
     def step(self) -> dict[str, Frame]:
         """Advance one tick and return the frames of the faces that moved."""
@@ -117,12 +124,29 @@ class _Group:
         """Apply the keyframes whose time has come."""
         for face, keyframe in () if self.schedule.empty else self.schedule.due(self.ticks):
             try:
-                tick = self.simulator.apply(face, keyframe)
+                self.play(face, keyframe)
             except EngineError as error:  # Others hold the layer, or the rig has been edited.
                 _LOG.warning("a keyframe was not played", session=face, reason=str(error))
-                continue
-            self.awake.add(face)
-            self.played.append(Played(face, tick, keyframe))
+        for face, keyframe in self.lives.due(self.ticks):
+            with suppress(EngineError):  # For the same reasons; nobody waits for it.
+                self.play(face, keyframe, idle=True)
+
+    def play(self, face: str, keyframe: Keyframe, *, idle: bool = False) -> None:
+        """Apply a keyframe now, to be told of later.
+
+        Raises:
+            EngineError: If the face cannot play it.
+        """
+        tick = self.simulator.apply(face, keyframe)
+        self.awake.add(face)
+        self.played.append(Played(face, tick, keyframe, idle))
+
+    def live(self, face: str, idle: Idle | None) -> None:
+        """Have a face live by itself from now on, in place of the life that it has."""
+        if self.lives.leave(face, self.ticks) is not None:
+            self.play(face, end_of_life(), idle=True)
+        if idle is not None:
+            self.lives.begin(face, idle_keyframes(idle, self.rig.action_units), self.ticks)
 
     def forget(self, face: str) -> None:
         """Take a face off the lists."""
@@ -197,6 +221,10 @@ class EmbeddedRunner:
     async def perform(self, session: str, keyframes: Sequence[Keyframe]) -> int:
         """Play keyframes at their times from the next tick on; return that tick."""
         return await self._mailbox.ask(lambda: self._perform(session, keyframes))
+
+    async def live(self, session: str, idle: Idle | None) -> int:
+        """Have a face live by itself from the next tick on; return that tick."""
+        return await self._mailbox.ask(lambda: self._live(session, idle))
 
     async def close(self, session: str) -> None:
         """Forget the face."""
@@ -427,6 +455,11 @@ class EmbeddedRunner:
         group.schedule.plan(session, keyframes, group.ticks)
         return group.simulator.frame(session).tick
 
+    def _live(self, session: str, idle: Idle | None) -> int:
+        group = self._group(session)
+        group.live(session, idle)
+        return group.simulator.frame(session).tick
+
     def _move(self, session: str, rig: Rig, spare: Simulator | None) -> int:
         old = self._group(session)
         new = self._join(rig, old.model, spare)
@@ -434,6 +467,7 @@ class EmbeddedRunner:
             return old.simulator.frame(session).tick
         new.simulator.add(session, state=old.simulator.remove(session))
         new.schedule.carry_on(session, old.schedule.leave(session, old.ticks), new.ticks)
+        new.lives.carry_on(session, old.lives.leave(session, old.ticks), new.ticks)
         if session in old.waiting:
             new.waiting[session] = old.waiting[session]
         self._leave(session, old)
@@ -452,6 +486,7 @@ class EmbeddedRunner:
     def _leave(self, session: str, group: _Group) -> None:
         """Drop a simulator that has no faces left."""
         group.forget(session)
+        group.lives.leave(session, group.ticks)
         if not group.simulator.faces:
             self._groups.remove(group)
 

@@ -26,7 +26,7 @@ async def record_last(sessions: Sessions, session: Session, *, last: float, fps:
         Conflict: If nothing was ever set on the face.
     """
     view = await sessions.view(session)
-    commands, rig, model = list(session.commands), session.rig, session.model
+    commands, rig, model = session.performed, session.rig, session.model
     return await asyncio.to_thread(
         recorded_clip, commands, rig, model, now=view.frame.tick, last=last, fps=fps
     )

@@ -15,6 +15,7 @@ from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Refused
 from .explaining import explain
+from .idle import with_life
 from .render_process import SIMULATION_SHARE
 
 Show = Callable[[str, float], None]
@@ -54,6 +55,7 @@ def render_file(
         show("building the rig", 0.0)
         chosen = builtin_rig(clip.rig)
         timeline, warnings = clip_timeline(clip, chosen)
+        timeline = with_life(timeline, clip, chosen)
         rendered = record(
             chosen,
             timeline,

@@ -10,7 +10,7 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from engine import Frame, Keyframe, Model, Rig, Snapshot, Timeline
+from engine import Frame, Idle, Keyframe, Model, Rig, Snapshot, Timeline
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,19 @@ class Move:
 
 @dataclass(frozen=True)
 class Played:
-    """A keyframe that waited for its time, and the tick at which it took effect."""
+    """A keyframe that waited for its time, and the tick at which it took effect.
+
+    Attributes:
+        session: Whose face.
+        tick: When.
+        keyframe: Which.
+        idle: Whether the face did it by itself.
+    """
 
     session: str
     tick: int
     keyframe: Keyframe
+    idle: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +98,16 @@ class Runner(Protocol):
         Raises:
             NotFound: If there is no such face.
             Busy: If the simulation has stopped, or too much waits for the face already.
+        """
+
+    async def live(self, session: str, idle: Idle | None) -> int:
+        """Have a face live by itself from the next tick on; return that tick.
+
+        The life that it has ends, and with None it has no other.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped.
         """
 
     async def close(self, session: str) -> None:

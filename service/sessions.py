@@ -14,7 +14,7 @@ from typing import Any
 
 import structlog
 
-from engine import EngineError, Frame, Keyframe, Model, Rig, Timeline, Writers, ticks
+from engine import EngineError, Frame, Idle, Keyframe, Model, Rig, Timeline, Writers, ticks
 
 from .access import EVERYTHING, Access
 from .bodies import Units
@@ -30,6 +30,8 @@ from .viewers import Viewer
 
 _LOG = structlog.get_logger("sessions")
 _COMMANDS_KEPT = 20_000
+_LIVED_KEPT = 600
+"""Keyframes of idle life that are kept: more than it plays in the longest recording."""
 _BEATS_PER_SECOND = 5
 _SHIFTS = 4
 """Parts of the sessions that are tended in turn, so that no tick answers for all of them."""
@@ -62,6 +64,8 @@ class Session:
         frame: Its latest frame.
         held: What each writer holds in each layer, and how long; survives a restart.
         commands: The timeline so far, oldest first.
+        idle: The idle life that it has.
+        lived: What that did of late, oldest first.
         viewers: The sockets that watch it.
         editing: Held while a live edit derives a rig, so that edits follow each other.
         turns: How often each recipe of an emotion was played on it.
@@ -79,6 +83,8 @@ class Session:
     held: Writers
     made_by: str = ""
     commands: deque[Command] = field(default_factory=lambda: deque(maxlen=_COMMANDS_KEPT))
+    idle: Idle | None = None
+    lived: deque[Command] = field(default_factory=lambda: deque(maxlen=_LIVED_KEPT))
     viewers: set[Viewer] = field(default_factory=set)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
     turns: Counter[str] = field(default_factory=Counter)
@@ -123,7 +129,23 @@ class Session:
             for keyframe in self.held.keyframes(tick)
             if self.speaking.get((keyframe.layer, keyframe.owner), tick) <= tick
         )
-        return {"id": self.id, "rig": self.rig.id, "held": held, "used": self.used}
+        return {
+            "id": self.id,
+            "rig": self.rig.id,
+            "held": held,
+            "used": self.used,
+            "life": self.life,
+        }
+
+    @property
+    def life(self) -> dict[str, float] | None:
+        """Its idle life as plain data."""
+        return None if self.idle is None else asdict(self.idle)
+
+    @property
+    def performed(self) -> list[Command]:
+        """What it was told, and what it did by itself of late, in order."""
+        return sorted([*self.commands, *self.lived], key=lambda each: each.tick)
 
     def describe(self) -> dict[str, object]:
         """Return what the API says of it."""
@@ -136,6 +158,7 @@ class Session:
             "surface": f"/api/rigs/{self.rig.id}/surface.glb",
             "tick": self.frame.tick,
             "asleep": self.frame.asleep,
+            "idle": self.life,
             "viewers": len(self.viewers),
             "created": self.created,
         }
@@ -179,6 +202,10 @@ class Session:
             self.commands.clear()
             self.commands.extend(in_order)
 
+    def told(self, view: View) -> dict[str, object]:
+        """Return what viewers are told of what it holds."""
+        return {**view.report, "idle": self.life}
+
     def hello(self, view: View) -> dict[str, object]:
         """Return the first event of a socket."""
         return {
@@ -186,7 +213,7 @@ class Session:
             "protocol": SUBPROTOCOL,
             "session": self.id,
             **self.on_rig(),
-            "state": view.report,
+            "state": self.told(view),
         }
 
 
@@ -261,8 +288,8 @@ class Sessions:
             )
         return lines
 
-    async def open(self, rig: Rig, model: Model) -> Session:
-        """Make a new session.
+    async def open(self, rig: Rig, model: Model, idle: Idle | None = None) -> Session:
+        """Make a new session, which lives by itself with `idle`.
 
         Raises:
             AtCapacity: If the faces that are awake take as much of a tick as they may.
@@ -281,7 +308,11 @@ class Sessions:
             try:
                 row = await store.aside(
                     lambda: store.add_session(
-                        session_id, rig=rig.id, model=asdict(model), made_by=self._access.maker
+                        session_id,
+                        rig=rig.id,
+                        model=asdict(model),
+                        made_by=self._access.maker,
+                        life=None if idle is None else asdict(idle),
                     )
                 )
                 return await self._wake(row, rig, model)
@@ -369,6 +400,19 @@ class Sessions:
             speaking[whose] = max(end, speaking.get(whose, end))
         others = {whose: end for whose, end in session.speaking.items() if end > tick}
         session.speaking = {**others, **speaking}
+        await self._keeper.keep(session, tick)
+        return tick
+
+    async def live(self, session: Session, idle: Idle | None) -> int:
+        """Have a session live by itself from now on, or no more; return the tick of it.
+
+        Raises:
+            Forbidden: If they may only watch.
+            Busy: If it does, and could not be kept.
+        """
+        self.check_commands()
+        tick = await self._runner.live(session.id, idle)
+        session.idle, session.state_changed = idle, True
         await self._keeper.keep(session, tick)
         return tick
 
@@ -466,7 +510,9 @@ class Sessions:
                 session.show(frame)
         for played in tick.played:
             session = self._live.get(played.session)
-            if session is not None:
+            if session is not None and played.idle:
+                session.lived.append(Command(played.tick, played.keyframe))
+            elif session is not None:
                 session.note(Command(played.tick, played.keyframe))
                 session.take(played.keyframe, played.tick)
                 session.unsaved = session.state_changed = True
@@ -517,7 +563,7 @@ class Sessions:
         if session.viewers and (session.state_changed or not session.frame.asleep):
             session.state_changed = False
             view = await self._runner.view(session.id)
-            session.tell({"type": "state", "tick": view.frame.tick, **view.report})
+            session.tell({"type": "state", "tick": view.frame.tick, **session.told(view)})
 
     async def _each_second(self, session: Session) -> None:
         for viewer in session.viewers:
@@ -595,6 +641,9 @@ class Sessions:
             session.commands.append(Command(view.frame.tick, keyframe))
             session.take(keyframe, view.frame.tick)
         self._live[row.id] = session
+        if row.life is not None:  # From now on it is told what its life plays.
+            session.idle = Idle(**row.life)
+            await self._runner.live(row.id, session.idle)
         self._rigs.bake(rig)
         return session
 

@@ -97,7 +97,7 @@ class NamedRigRow(Table):
 
 
 class SessionRow(Table):
-    """A session: its rig, its model, and the controls it held last."""
+    """A session: its rig, its model, the controls it held last, and its idle life if it has one."""
 
     __tablename__ = "sessions"
 
@@ -108,6 +108,7 @@ class SessionRow(Table):
     created: Mapped[float] = mapped_column(Float)
     used: Mapped[float] = mapped_column(Float)
     made_by: Mapped[str] = mapped_column(String(64), default="", server_default="")
+    life: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True), default=None)
 
 
 class ClipRow(Table):
@@ -272,9 +273,15 @@ class Store:
     # Sessions.
 
     def add_session(
-        self, session_id: str, *, rig: str, model: Mapping[str, str], made_by: str = ""
+        self,
+        session_id: str,
+        *,
+        rig: str,
+        model: Mapping[str, str],
+        made_by: str = "",
+        life: Mapping[str, Any] | None = None,
     ) -> SessionRow:
-        """Keep a new session of a key."""
+        """Keep a new session of a key, and the idle life that it has."""
         now = time.time()
         row = SessionRow(
             id=session_id,
@@ -284,6 +291,7 @@ class Store:
             created=now,
             used=now,
             made_by=made_by,
+            life=None if life is None else dict(life),
         )
         with self._session.begin() as session:
             session.add(row)
@@ -293,7 +301,7 @@ class Store:
         """Keep what sessions hold now, in one transaction; those that were closed stay so.
 
         Args:
-            rows: Of each its `id`, `rig`, `held` and `used`.
+            rows: Of each its `id`, `rig`, `held`, `used` and `life`.
         """
         if not rows:
             return
@@ -301,7 +309,10 @@ class Store:
             connection.execute(
                 _KEEP_SESSION,
                 [
-                    {"which": row["id"], **{name: row[name] for name in ("rig", "held", "used")}}
+                    {
+                        "which": row["id"],
+                        **{name: row[name] for name in ("rig", "held", "used", "life")},
+                    }
                     for row in rows
                 ],
             )

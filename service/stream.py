@@ -14,14 +14,17 @@ from fastapi import APIRouter, WebSocket
 from pydantic import ValidationError
 from starlette.websockets import WebSocketDisconnect
 
+from engine import Idle
+
 from .access import Access
-from .bodies import MESSAGE, AckMessage, ControlsMessage
+from .bodies import MESSAGE, AckMessage, ControlsMessage, IdleMessage
 from .commands import controls_keyframe
 from .components import Components, parts_of
 from .emotions import play_emotion
 from .errors import Refused, error_body, json_response
 from .explaining import explain
 from .guard import KEY_SUBPROTOCOL
+from .idle import idle_of
 from .protocol import SUBPROTOCOL
 from .sessions import Session
 from .viewers import Viewer
@@ -132,6 +135,9 @@ async def _obey(
         if not parts.rate.allow(client):
             viewer.offer(_error("too_many_requests", "too many messages; slow down"))
             return
+        if isinstance(message, IdleMessage):
+            await parts.sessions.live(session, _life(message, session))
+            return
         if isinstance(message, ControlsMessage):
             keyframe = controls_keyframe(message, session.rig, replace=message.replace)
         else:
@@ -147,6 +153,11 @@ async def _obey(
         viewer.offer(_error("invalid_message", found.message, found.known))
     except Refused as refused:
         viewer.offer({"type": "error", **refused.body()})
+
+
+def _life(message: IdleMessage, session: Session) -> Idle | None:
+    seed = session.idle.seed if session.idle else None
+    return idle_of(message, seed=seed) if message.on else None
 
 
 def _plain(text: str) -> object:

@@ -23,6 +23,7 @@ from ..components import Components, Parts
 from ..emotions import play_emotion
 from ..errors import Conflict, json_response, refused_by_engine
 from ..facs import with_facs
+from ..idle import idle_of
 from ..recording import record_last
 from ..rigs import FULL, tag_of
 from ..sessions import Session
@@ -38,9 +39,9 @@ RECORDED: dict[int | str, dict[str, Any]] = {
 
 @router.post("", status_code=201, responses=AT_CAPACITY)
 async def open_session(parts: Parts, response: Response, body: NewSession) -> dict[str, Any]:
-    """Open a session, a face at rest until somebody commands it; 429 while no more can move."""
+    """Open a session, a face at rest or, with `idle`, alive; 429 while no more can move."""
     rig = await parts.rigs.get(body.rig)
-    session = await parts.sessions.open(rig, live_model(body.model, rig))
+    session = await parts.sessions.open(rig, live_model(body.model, rig), idle_of(body.idle))
     response.headers["Location"] = f"/api/sessions/{session.id}"
     return session.describe()
 

@@ -50,7 +50,9 @@ def face(service: Client) -> Iterator[Face]:
 
 
 def test_a_face_is_opened_moved_and_closed(service: Client) -> None:
-    with service.open_face("standard", integrator="rk2") as face:
+    idle = {"seed": 3, "gaze": 0.0, "head": 0.0}
+    with service.open_face("standard", idle=idle, integrator="rk2") as face:
+        assert face.state()["idle"] == {**idle, "blinks": 1.0, "micro": 0.3}
         assert face.viewer_url.startswith(f"{service.url}/?session=")
         told = face.set_controls(facs="6C+12D", fade=0.1)
         assert told["warnings"] == []

@@ -26,7 +26,8 @@ class Counter:
     unsaved: bool = False
 
     def to_row(self, tick: int) -> dict[str, Any]:
-        return {"id": self.id, "rig": "standard", "held": [self.value], "used": float(tick)}
+        held = [self.value]
+        return {"id": self.id, "rig": "standard", "held": held, "used": float(tick), "life": None}
 
 
 def kept(store: Store, session: str) -> list[Any]:

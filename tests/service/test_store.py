@@ -29,9 +29,24 @@ def test_the_file_is_set_up_for_many_readers(store: Store) -> None:
 def test_idle_sessions_are_forgotten_but_live_ones(store: Store) -> None:
     for name, used in (("old", 10.0), ("old-but-live", 10.0), ("new", 30.0)):
         store.add_session(name, rig="standard", model={})
-        store.keep_sessions([{"id": name, "rig": "standard", "held": [], "used": used}])
+        store.keep_sessions(
+            [{"id": name, "rig": "standard", "held": [], "used": used, "life": None}]
+        )
     store.remove_idle_sessions(20.0, but=["old-but-live"])
     assert {row.id for row in store.sessions()} == {"old-but-live", "new"}
+
+
+def test_the_life_of_a_session_is_kept_with_it(store: Store) -> None:
+    def life(name: str) -> object:
+        row = store.session(name)
+        return row.life if row else "gone"
+
+    store.add_session("a", rig="standard", model={}, life={"seed": 1})
+    store.add_session("b", rig="standard", model={})
+    assert (life("a"), life("b")) == ({"seed": 1}, None)
+    rest = {"rig": "standard", "held": [], "used": 1.0}
+    store.keep_sessions([{"id": "a", **rest, "life": None}, {"id": "b", **rest, "life": {"x": 2}}])
+    assert (life("a"), life("b")) == (None, {"x": 2})
 
 
 def test_a_rig_is_kept_once(store: Store) -> None:

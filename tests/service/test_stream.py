@@ -67,7 +67,7 @@ def test_hello_comes_first_and_a_frame_stands_alone(client: TestClient, session:
         assert hello["surface"] == f"/api/rigs/{rig['id']}/surface.glb"
         assert hello["vertices"] == rig["mesh"]["surface_vertices"]
         assert (hello["rate"], hello["grid"]) == (60, 2e-5)
-        assert set(hello["state"]) == {"layers", "merged"}
+        assert set(hello["state"]) == {"layers", "merged", "idle"}
         frame = frame_where(socket, lambda _: True)
         assert len(frame.steps) == hello["vertices"]
 
