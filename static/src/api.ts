@@ -118,8 +118,9 @@ export class Api {
     );
   }
 
-  openSession(rig: string): Promise<SessionInfo> {
-    return this.json('POST', 'api/sessions', { rig }) as Promise<SessionInfo>;
+  /** Open a face at rest, or one that lives by itself. */
+  openSession(rig: string, idle: boolean): Promise<SessionInfo> {
+    return this.json('POST', 'api/sessions', { rig, idle }) as Promise<SessionInfo>;
   }
 
   session(id: string): Promise<SessionInfo> {

@@ -1,7 +1,7 @@
 // What the sliders and buttons say to the face, as commands of one layer.
 
 import type { Layer } from './protocol';
-import { controlsCommand, emotionCommand, LAYERS, replaceCommand } from './protocol';
+import { controlsCommand, emotionCommand, idleCommand, LAYERS, replaceCommand } from './protocol';
 import type { Group } from './state/actions';
 import type { ViewerState } from './state/viewer.svelte';
 import { Throttle } from './throttle';
@@ -61,6 +61,13 @@ export class Commands {
     this.touch();
     this.viewer.emotion = '';
     this.release('emotion');
+  }
+
+  /** Have the face blink, look about and sway by itself, or leave it still. */
+  setAlive(alive: boolean): void {
+    this.touch();
+    this.viewer.alive = alive;
+    this.send(idleCommand(alive));
   }
 
   reset(): void {

@@ -35,6 +35,7 @@ const viewer = new ViewerState();
 const rate = new TickRate();
 viewer.rigName = page.rig;
 viewer.view = page.view;
+viewer.alive = page.idle && moving();
 document.body.classList.toggle('bare', page.bare);
 
 const PERSON_PAUSE_MS = 350;
@@ -118,7 +119,7 @@ async function locateStream(): Promise<string> {
   }
   viewer.step = { words: `Preparing ${who()}`, share: null };
   void tellOfStart();
-  const opened = await api.openSession(viewer.rigName);
+  const opened = await api.openSession(viewer.rigName, viewer.alive);
   session = opened.id;
   const address = new URL(window.location.href);
   address.searchParams.set('session', session);
@@ -239,6 +240,7 @@ async function showRig(id: string, isNew: boolean): Promise<void> {
 function takeState(state: FaceState): void {
   viewer.merged = state.merged ?? {};
   if (!commands.handsOff) return;
+  if (state.idle !== undefined) viewer.alive = state.idle !== null;
   viewer.sliders.take(state.layers?.puppet ?? {});
   const emotion = state.layers?.emotion?.emotion;
   viewer.emotion = expressionOf(emotion);
@@ -310,6 +312,9 @@ const actions: Actions = {
   },
   stopEmotion: () => {
     commands.stopEmotion();
+  },
+  setAlive: (alive) => {
+    commands.setAlive(alive);
   },
   setTissue(path, value) {
     const key = path.join('.');

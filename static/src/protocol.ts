@@ -183,6 +183,8 @@ export interface Merged extends Held {
 export interface FaceState {
   layers?: Partial<Record<Layer, HeldLayer>>;
   merged?: Merged;
+  /** What the face does by itself; null for nothing. */
+  idle?: Numbers | null;
 }
 
 /** The one expression that plays, by the name that a rig's emotion has too; empty for a mixture. */
@@ -270,6 +272,11 @@ export function replaceCommand(controls: Controls): string {
 /** Play an emotion in its first variant: the same one while its intensity is dragged. */
 export function emotionCommand(label: string, intensity: number, fadeIn: number | null): string {
   return JSON.stringify({ type: 'emotion', label, intensity, fade_in: fadeIn, seed: 0 });
+}
+
+/** Have the face live by itself, or no more. */
+export function idleCommand(on: boolean): string {
+  return JSON.stringify({ type: 'idle', on });
 }
 
 export function ackCommand(tick: number): string {

@@ -9,6 +9,8 @@ export interface PageOptions {
   rig: string;
   /** No panels, fixed camera: for contact sheets and tests. */
   bare: boolean;
+  /** Whether a face that the page opens lives by itself; `idle=0` opens one at rest. */
+  idle: boolean;
   /** Draw only when `__viewer.render()` asks: for pictures, where each costs seconds. */
   still: boolean;
   /** Name of a view, or degrees aside. */
@@ -31,6 +33,7 @@ export function readPageOptions(search: string): PageOptions {
     session: session !== null && /^[a-z0-9_-]{1,64}$/.test(session) ? session : null,
     rig: query.get('rig') ?? DEFAULT_RIG,
     bare: query.get('bare') === '1',
+    idle: query.get('idle') !== '0',
     still: query.get('still') === '1',
     view: isView(view) || (view !== '' && Math.abs(Number(view)) <= 180) ? view : 'front',
     pixelRatio: pixelRatio > 0 && pixelRatio <= 4 ? pixelRatio : null,

@@ -104,6 +104,7 @@ describe('readPageOptions', () => {
       session: null,
       rig: 'standard',
       bare: false,
+      idle: true,
       still: false,
       view: 'front',
       level: null,
@@ -118,10 +119,13 @@ describe('readPageOptions', () => {
   });
 
   it('reads what is asked', () => {
-    expect(readPageOptions('?session=a_1&rig=paper&bare=1&still=1&view=profile&dpr=1')).toEqual({
+    expect(
+      readPageOptions('?session=a_1&rig=paper&bare=1&idle=0&still=1&view=profile&dpr=1'),
+    ).toEqual({
       session: 'a_1',
       rig: 'paper',
       bare: true,
+      idle: false,
       still: true,
       view: 'profile',
       level: null,

@@ -86,10 +86,24 @@ def settle(page: playwright_api.Page, after: int = -1) -> int:
     return int(page.evaluate("() => window.__viewer.tick"))
 
 
-def test_a_slider_lifts_the_streamed_and_the_drawn_mouth_corners(
+def switch_off_idle_life(page: playwright_api.Page, url: str) -> None:
+    """See that a face that the page opened lives, and end that by the keyboard."""
+    page.wait_for_function("() => window.__viewer?.ready")
+    life = f"{url}/api/sessions/{page.evaluate('() => window.__viewer.session')}/idle"
+    switch = page.get_by_role("switch", name="Idle life")
+    playwright_api.expect(switch).to_be_checked()
+    assert page.request.get(life).json()["idle"]["blinks"] == 1.0
+    switch.press("Space")
+    playwright_api.expect(switch).not_to_be_checked()
+    settle(page)
+    assert page.request.get(life).json() == {"idle": None}
+
+
+def test_a_face_lives_and_a_slider_lifts_the_streamed_and_the_drawn_mouth_corners(
     page: playwright_api.Page, url: str
 ) -> None:
     page.goto(url)
+    switch_off_idle_life(page, url)
     tick = settle(page)
     assert page.evaluate("() => window.__viewer.connected && window.__viewer.framesDrawn > 0")
     rest = {name: height(page, name) for name in CORNERS}
@@ -124,7 +138,7 @@ def test_a_visitor_reads_what_is_being_done(page: playwright_api.Page, url: str)
           if (words && !window.__said.includes(words)) window.__said.push(words);
         }).observe(document, {subtree: true, childList: true, characterData: true});"""
     )
-    page.goto(url)
+    page.goto(f"{url}/?idle=0")
     settle(page)
     said = page.evaluate("() => window.__said")
     assert said[0].startswith(("Connecting", "Preparing"))
@@ -136,14 +150,14 @@ def test_a_visitor_reads_what_a_starting_service_is_at(page: playwright_api.Page
     starting = {"error": "not_ready", "message": "the service is compiling the simulation"}
     page.route("**/api/ready", lambda route: route.fulfill(status=503, json=starting))
     page.route("**/api/sessions", lambda _: None)  # A first session waits for the first rig.
-    page.goto(url)
+    page.goto(f"{url}/?idle=0")
     said = page.locator("#curtain span")
     playwright_api.expect(said).to_have_text("The service is starting: compiling the simulation")
     page.unroute_all(behavior="ignoreErrors")
 
 
 def test_a_session_that_was_closed_is_opened_anew(page: playwright_api.Page, url: str) -> None:
-    page.goto(url)
+    page.goto(f"{url}/?idle=0")
     settle(page)
     page.wait_for_function("() => window.__viewer.textured")
     session = page.evaluate("() => window.__viewer.session")
@@ -153,7 +167,7 @@ def test_a_session_that_was_closed_is_opened_anew(page: playwright_api.Page, url
 
 
 def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> None:
-    page.goto(url)
+    page.goto(f"{url}/?idle=0")
     settle(page)
     page.get_by_role("button", name="Sean").wait_for()
     for width, height in ((1280, 800), (1600, 1000)):
@@ -175,7 +189,7 @@ def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> 
 
 
 def test_panels_show_what_an_emotion_plays(page: playwright_api.Page, url: str) -> None:
-    page.goto(url)
+    page.goto(f"{url}/?idle=0")
     tick = settle(page)
     page.get_by_role("button", name="Contempt").click(force=True)
     settle(page, tick)

@@ -13,6 +13,8 @@ export interface Actions {
   /** Play an emotion, or change how strong the one that plays is. */
   playEmotion(label: string, intensity: number): void;
   stopEmotion(): void;
+  /** Whether the face blinks, looks about and sways by itself. */
+  setAlive(alive: boolean): void;
   setTissue(path: readonly string[], value: number): void;
   setMuscleField(muscle: string, field: string, value: number): void;
   /** Open a new session on another rig. */

@@ -64,6 +64,8 @@ export class ViewerState {
   step = $state.raw<Step | null>({ words: 'Connecting to the service', share: null });
   tickRate = $state(0);
   asleep = $state(false);
+  /** Whether the face lives by itself while nobody asks anything of it. */
+  alive = $state(false);
   /** One sentence about the last thing that went wrong; empty when all is well, or after a while. */
   notice = $state('');
   emotion = $state('');
