@@ -148,6 +148,11 @@ class _Group:
         if idle is not None:
             self.lives.begin(face, idle_keyframes(idle, self.rig.action_units), self.ticks)
 
+    def pause(self, face: str) -> None:
+        """Have a face's life wait, and the face come to rest."""
+        if self.lives.pause(face, self.ticks):
+            self.play(face, end_of_life(), idle=True)
+
     def forget(self, face: str) -> None:
         """Take a face off the lists."""
         self.schedule.leave(face, self.ticks)
@@ -225,6 +230,14 @@ class EmbeddedRunner:
     async def live(self, session: str, idle: Idle | None) -> int:
         """Have a face live by itself from the next tick on; return that tick."""
         return await self._mailbox.ask(lambda: self._live(session, idle))
+
+    async def pause(self, session: str) -> None:
+        """Have the life of a face wait, and the face come to rest."""
+        await self._mailbox.ask(lambda: self._group(session).pause(session))
+
+    async def resume(self, session: str) -> None:
+        """Have the life of a face that waits go on where it stopped."""
+        await self._mailbox.ask(lambda: self._resume(session))
 
     async def close(self, session: str) -> None:
         """Forget the face."""
@@ -459,6 +472,10 @@ class EmbeddedRunner:
         group = self._group(session)
         group.live(session, idle)
         return group.simulator.frame(session).tick
+
+    def _resume(self, session: str) -> None:
+        group = self._group(session)
+        group.lives.resume(session, group.ticks)
 
     def _move(self, session: str, rig: Rig, spare: Simulator | None) -> int:
         old = self._group(session)

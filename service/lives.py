@@ -33,18 +33,20 @@ class Lives:
 
     def __init__(self) -> None:
         self._lives: dict[str, Life] = {}
+        self._paused: dict[str, Life] = {}
 
     @property
     def empty(self) -> bool:
-        """True while no face has one."""
+        """True while no face has one that goes on."""
         return not self._lives
 
     def __contains__(self, face: str) -> bool:
+        """Tell whether a face has one that goes on."""
         return face in self._lives
 
     def begin(self, face: str, keyframes: Iterator[Keyframe], now: int) -> None:
         """Have a face live by keyframes at their times from the tick `now` on; none has no life."""
-        self._lives.pop(face, None)
+        self.leave(face, now)
         first = next(keyframes, None)
         if first is not None:
             self._lives[face] = Life(now, first, keyframes)
@@ -65,7 +67,19 @@ class Lives:
         life = self._lives.pop(face, None)
         if life is not None:
             life.begun -= now
-        return life
+        return life or self._paused.pop(face, None)
+
+    def pause(self, face: str, now: int) -> bool:
+        """Have a face's life wait; return whether it has one that went on."""
+        life = self.leave(face, now) if face in self else None
+        if life is not None:
+            self._paused[face] = life
+        return life is not None
+
+    def resume(self, face: str, now: int) -> None:
+        """Have a life that waits go on where it stopped."""
+        if face in self._paused:
+            self.carry_on(face, self._paused.pop(face), now)
 
     def carry_on(self, face: str, life: Life | None, now: int) -> None:
         """Have a life that was taken out go on from the tick `now`."""

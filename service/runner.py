@@ -110,6 +110,22 @@ class Runner(Protocol):
             Busy: If the simulation has stopped.
         """
 
+    async def pause(self, session: str) -> None:
+        """Have the life of a face, if it has one, wait, and the face come to rest.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped.
+        """
+
+    async def resume(self, session: str) -> None:
+        """Have the life of a face that waits go on where it stopped.
+
+        Raises:
+            NotFound: If there is no such face.
+            Busy: If the simulation has stopped.
+        """
+
     async def close(self, session: str) -> None:
         """Forget the face.
 

@@ -32,6 +32,9 @@ _LOG = structlog.get_logger("sessions")
 _COMMANDS_KEPT = 20_000
 _LIVED_KEPT = 600
 """Keyframes of idle life that are kept: more than it plays in the longest recording."""
+_UNWATCHED_SECONDS = 60.0
+"""After which the idle life of a face waits that nobody watches or asks for: it would take part of
+each tick from those who are seen."""
 _BEATS_PER_SECOND = 5
 _SHIFTS = 4
 """Parts of the sessions that are tended in turn, so that no tick answers for all of them."""
@@ -65,7 +68,8 @@ class Session:
         held: What each writer holds in each layer, and how long; survives a restart.
         commands: The timeline so far, oldest first.
         idle: The idle life that it has.
-        lived: What that did of late, oldest first.
+        paused: Whether that waits, since nobody has looked for a while.
+        lived: What it did of late, oldest first.
         viewers: The sockets that watch it.
         editing: Held while a live edit derives a rig, so that edits follow each other.
         turns: How often each recipe of an emotion was played on it.
@@ -84,6 +88,7 @@ class Session:
     made_by: str = ""
     commands: deque[Command] = field(default_factory=lambda: deque(maxlen=_COMMANDS_KEPT))
     idle: Idle | None = None
+    paused: bool = False
     lived: deque[Command] = field(default_factory=lambda: deque(maxlen=_LIVED_KEPT))
     viewers: set[Viewer] = field(default_factory=set)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
@@ -333,6 +338,9 @@ class Sessions:
         if not self._access.sees(session.made_by, session=session_id):
             raise _unknown(session_id)
         session.used = time.time()
+        if session.paused:
+            session.paused = False
+            await self._runner.resume(session.id)
         return session
 
     async def close(self, session_id: str) -> None:
@@ -568,7 +576,11 @@ class Sessions:
     async def _each_second(self, session: Session) -> None:
         for viewer in session.viewers:
             viewer.repeat_frame()
-        if not session.viewers and time.time() - session.used > self._idle_seconds:
+        alone = 0.0 if session.viewers else time.time() - session.used
+        if session.idle is not None and not session.paused and alone > _UNWATCHED_SECONDS:
+            session.paused = True
+            await self._runner.pause(session.id)
+        if alone > self._idle_seconds:
             _LOG.info("a session that nobody uses is closed", session=session.id)
             await self.close(session.id)
 

@@ -15,6 +15,7 @@ from starlette.testclient import TestClient
 from engine import Frame, Idle, Model, Simulator, Timeline, builtin_rig, ticks
 from service.app import create_app
 from service.bodies import NewClip
+from service.commanded import commanded_units
 from service.commands import clip_timeline
 from service.embedded import EmbeddedRunner
 from service.idle import lived, with_life
@@ -75,6 +76,24 @@ def test_a_session_lives_from_its_opening_until_it_is_told_not_to(client: TestCl
     until(lambda: state(client, session)["asleep"])
     assert state(client, session)["layers"] == {}
     assert parts_of(client).store.session(session).life is None  # type: ignore[union-attr]
+    client.delete(f"/api/sessions/{session}")
+
+
+def test_a_life_waits_while_nobody_looks(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session = opened(client, idle={"seed": 3})["id"]
+    live = parts_of(client).sessions._live[session]
+    until(lambda: len(live.lived) > 2)
+    with monkeypatch.context() as patch:
+        patch.setattr("service.sessions._UNWATCHED_SECONDS", 0.2)
+        until(lambda: live.paused and live.frame.asleep)
+    assert live.idle is not None
+    played = len(live.lived)
+    assert state(client, session)["idle"]["seed"] == 3
+    assert not live.paused
+    until(lambda: len(live.lived) > played)
+    until(lambda: held_by_life(client, session) == ["idle"])
     client.delete(f"/api/sessions/{session}")
 
 
@@ -190,14 +209,11 @@ def test_a_clip_lives_too_and_the_same_one_the_same_life() -> None:
         assert [each.owner for each in still.keyframes] == ["anyone"]
 
 
-def test_a_clip_that_lives_shows_it(client: TestClient) -> None:
-    body = {"timeline": [], "duration": 3.5, "idle": {"seed": SEED}, "fps": 10, "textures": False}
-    fast = {"model": {"integrator": "verlet"}, "level": "low"}
-    answer = client.post("/api/clips", json={**body, **fast}, params={"wait": 60})
-    assert answer.status_code == 200, answer.text
-    table = client.get(f"{answer.headers['Location']}.csv").text.splitlines()
-    blinks = table[0].split(",").index("AU45")
-    assert max(float(line.split(",")[blinks]) for line in table[1:]) > 0.5
+def test_a_clip_that_lives_commands_it(client: TestClient) -> None:
+    clip = NewClip.model_validate({"timeline": [], "duration": 5.0, "idle": {"seed": SEED}})
+    timeline, _ = parts_of(client).clips._checked(clip, RIG)
+    names, rows = commanded_units(timeline, RIG, [tick / 60.0 for tick in range(300)])
+    assert rows[:, names.index("AU45")].max() > 0.5
 
 
 def test_what_a_life_did_is_recorded_as_it_was() -> None:

@@ -47,6 +47,38 @@ def test_a_face_without_a_life_has_none_to_take_along() -> None:
     assert list(lives.due(100)) == []
 
 
+@given(NOW, st.integers(0, 300), st.integers(0, 300))
+def test_a_life_that_waits_goes_on_where_it_stopped(now: int, after: int, wait: int) -> None:
+    def lived(waits: int) -> list[tuple[int, Keyframe]]:
+        lives, seen = Lives(), []
+        lives.begin("face", idle_keyframes(Idle(seed=2), ["AU45"]), now)
+        for tick in range(now, now + 600 + waits):
+            if waits and tick == now + after:
+                assert lives.pause("face", tick)
+                assert not lives.pause("face", tick)
+                assert lives.empty
+            if waits and tick == now + after + waits:
+                lives.resume("face", tick)
+            late = waits if tick >= now + after else 0
+            seen += [(tick - late, each) for _, each in lives.due(tick)]
+        return seen
+
+    assert lived(wait) == lived(0)
+
+
+def test_a_life_that_waits_is_taken_along_and_ended() -> None:
+    lives = Lives()
+    assert not lives.pause("face", 3)
+    lives.resume("face", 4)
+    assert lives.empty
+    lives.begin("face", iter([Keyframe(time=1.0)]), 10)
+    lives.pause("face", 30)
+    others = Lives()
+    others.carry_on("face", lives.leave("face", 500), 100)
+    assert [list(others.due(tick)) != [] for tick in (139, 140)] == [False, True]
+    assert lives.leave("face", 600) is None
+
+
 def test_a_new_life_takes_the_place_of_the_last() -> None:
     lives = Lives()
     lives.begin("face", iter([Keyframe(time=1.0)]), 0)

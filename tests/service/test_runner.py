@@ -9,7 +9,7 @@ from contextlib import asynccontextmanager
 import numpy as np
 import pytest
 
-from engine import Frame, Keyframe, Model, Rig, Simulator, Timeline, builtin_rig
+from engine import Frame, Idle, Keyframe, Model, Rig, Simulator, Timeline, builtin_rig
 from service.embedded import EmbeddedRunner
 from service.errors import Busy, NotFound
 from service.runner import Move, Runner
@@ -190,6 +190,24 @@ async def a_view_names_the_writers(runner: Runner, rig: Rig) -> None:
     assert writers["jaw.pitch"] == ["puppet"]
 
 
+async def a_face_lives_waits_goes_on_and_ends(runner: Runner, rig: Rig) -> None:
+    await runner.open("a", rig, NOTHING, Model.for_rig(rig, integrator="verlet"))
+    await runner.live("a", Idle(seed=1, blinks=0.0, gaze=0.0, micro=0.0))
+    await frames_until(runner, "a", lambda frame: frame.pose.head[0] != 0.0)
+    await runner.pause("a")
+    last = (await frames_until(runner, "a", lambda frame: frame.asleep))[-1]
+    assert last.pose.head == (0.0, 0.0, 0.0)
+    await runner.resume("a")
+    await frames_until(runner, "a", lambda frame: any(frame.pose.head))
+    await runner.live("a", None)
+    await frames_until(runner, "a", lambda frame: frame.asleep)
+    assert (await runner.view("a")).report["layers"] == {}
+    for question in (runner.live("b", None), runner.pause("b"), runner.resume("b")):
+        with pytest.raises(NotFound):
+            await question
+
+
+test_a_face_lives = contract(a_face_lives_waits_goes_on_and_ends)
 test_a_face_does_what_a_simulator_does = contract(a_face_does_what_a_simulator_does)
 test_a_face_opens_with_its_timeline = contract(a_face_opens_with_its_timeline)
 test_a_lapse_wakes_a_sleeping_face = contract(a_command_that_lapses_lets_go_of_a_sleeping_face)
