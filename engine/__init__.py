@@ -78,7 +78,7 @@ from .settling import settled, settled_arkit, settled_units
 from .simulator import Simulator, Snapshot
 from .sources import ENGINE_HASH
 from .speech import LEAD, LETS_GO, SPEAKER, Cue, cues_of, speech_keyframes
-from .textures import texture_names, textures_of
+from .textures import bake_textures, texture_names, textures_of
 from .timeline import (
     ANYONE,
     LAYERS,
@@ -176,6 +176,7 @@ __all__ = [
     "arkit_shapes",
     "arkit_table",
     "arkit_to_glb",
+    "bake_textures",
     "blend",
     "broken_rules",
     "builtin_rig",

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import sys
-from pathlib import Path
 
-import engine
 from engine import kernels_are_kept
+
+from .apart import environment
 
 _SCRIPT = "import gc; gc.disable(); import engine; engine.warm_sweep()"
 
@@ -25,14 +24,12 @@ async def compile_sweep() -> None:
 
 async def _compile_apart() -> None:
     """Compile in a process; what it fails to do is done where a kernel is first called."""
-    home = str(Path(engine.__file__).parents[1])
-    path = os.pathsep.join(filter(None, (home, os.environ.get("PYTHONPATH"))))
     try:
         process = await asyncio.create_subprocess_exec(
             sys.executable,
             "-c",
             _SCRIPT,
-            env={**os.environ, "PYTHONPATH": path},
+            env=environment(),
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.DEVNULL,

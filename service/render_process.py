@@ -19,6 +19,7 @@ from typing import Any, BinaryIO
 
 from engine import EngineError, Model, Rig, Timeline, clip_to_glb, record
 
+from .apart import orders_and_answers
 from .deriving import Steps, made_from
 from .errors import Refused
 from .ground_truth import ground_truth_csv
@@ -141,8 +142,8 @@ class _News:
 def main() -> None:
     """Render until standard input ends."""
     stand_back()
-    orders, news = sys.stdin.buffer, _News(os.fdopen(os.dup(sys.stdout.fileno()), "wb"))
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # What else is printed goes to the log.
+    orders, answers = orders_and_answers()
+    news = _News(answers)
     while True:
         try:
             order: Order = pickle.load(orders)

@@ -8,22 +8,20 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import pickle
 import sys
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
+from .apart import environment
 from .errors import Unprocessable
 from .render_process import Order
 
 _KEPT_SECONDS = 60.0
 """For which a process waits for its next clip: it takes a second to start, and 150 MB."""
 _MODULE = f"{__package__}.render_process"
-_HOME = Path(__file__).parents[1]
 
 
 class RenderingEnded(Exception):
@@ -71,12 +69,11 @@ class Renderer:
             timer.cancel()
             if process.returncode is None:
                 return process
-        path = os.pathsep.join(filter(None, (str(_HOME), os.environ.get("PYTHONPATH"))))
         return await asyncio.create_subprocess_exec(
             sys.executable,
             "-m",
             _MODULE,
-            env={**os.environ, "PYTHONPATH": path},
+            env=environment(),
             stdin=PIPE,
             stdout=PIPE,
         )

@@ -38,6 +38,7 @@ from engine import (
 )
 
 from .access import EVERYTHING, Access
+from .baking import baked_apart
 from .deriving import Steps, derived, derived_by_steps, in_plain_changes
 from .errors import Busy, NotFound, refused_by_engine
 from .explaining import did_you_mean
@@ -294,7 +295,7 @@ class Rigs:
 
     def _baked(self, rig: Rig) -> Mapping[str, bytes]:
         try:
-            return textures_of(rig, cancelled=self._closing.is_set)
+            return textures_of(rig, bake=baked_apart, cancelled=self._closing.is_set)
         except Cancelled:
             raise
         except Exception:

@@ -57,7 +57,7 @@ def short_tracebacks() -> None:
 def no_bake() -> Iterator[None]:
     """Stand-ins for the maps of every rig: a bake takes seconds and is tested with the engine."""
 
-    def stand_in(rig: Rig, cancelled: object = None) -> dict[str, bytes]:
+    def stand_in(rig: Rig, **_options: object) -> dict[str, bytes]:
         file = io.BytesIO()
         Image.new("RGB", (4, 4), (180, 130, 110)).save(file, "JPEG")
         return dict.fromkeys(texture_names(rig), file.getvalue())

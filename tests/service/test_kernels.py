@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import engine
 from service import kernels
 from service.kernels import compile_sweep
 
@@ -24,7 +25,7 @@ def test_a_process_compiles_what_is_not_kept(
     script = f"import engine; open({str(done)!r}, 'w').write(engine.__file__)"
     monkeypatch.setattr(kernels, "_SCRIPT", script)
     asyncio.run(compile_sweep())
-    assert done.read_text() == kernels.engine.__file__
+    assert done.read_text() == engine.__file__
 
 
 def test_what_is_kept_takes_no_process(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -25,7 +25,9 @@ class Bakery:
         self.go = threading.Event()
         self.stopped = False
 
-    def __call__(self, rig: Rig, cancelled=None) -> dict[str, bytes]:  # type: ignore[no-untyped-def]
+    def __call__(  # type: ignore[no-untyped-def]
+        self, rig: Rig, bake=None, cancelled=None
+    ) -> dict[str, bytes]:
         self.asked.append(rig.name)
         while not self.go.wait(0.01):
             if cancelled():
