@@ -90,6 +90,14 @@ from .timeline import (
     ticks,
     usual_layer,
 )
+from .trackers import (
+    NEUTRAL_QUANTILE,
+    Track,
+    TrackOptions,
+    TrackReport,
+    read_track,
+    track_timeline,
+)
 from .visemes import viseme_blend, viseme_shapes, viseme_table
 from .vocabulary import (
     Lexicon,
@@ -122,6 +130,7 @@ __all__ = [
     "MOST_ALIKE",
     "MOST_LIFE",
     "NEUTRAL",
+    "NEUTRAL_QUANTILE",
     "OWNER",
     "PARTED",
     "REGIONS",
@@ -167,6 +176,9 @@ __all__ = [
     "Snapshot",
     "Term",
     "Timeline",
+    "Track",
+    "TrackOptions",
+    "TrackReport",
     "UnitBasis",
     "UnknownName",
     "Writers",
@@ -209,6 +221,7 @@ __all__ = [
     "question_of",
     "random_mixes",
     "read_kept",
+    "read_track",
     "recipe_attributes",
     "recipe_of",
     "record",
@@ -232,6 +245,7 @@ __all__ = [
     "texture_names",
     "textures_of",
     "ticks",
+    "track_timeline",
     "unit_basis",
     "unit_key",
     "usual_layer",

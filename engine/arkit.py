@@ -29,12 +29,18 @@ def find_arkit(name: str) -> Shape:
     Raises:
         UnknownName: With the nearest names.
     """
+    shape = known_arkit(name)
+    if shape is not None:
+        return shape
     normal = _normal(name)
-    if normal in _names():
-        return _names()[normal]
     table = arkit_table().shapes
     nearest = [each for each in table if _normal(each) in _near(normal)]
     raise UnknownName("ARKit shape", name, table, nearest=nearest)
+
+
+def known_arkit(name: str) -> Shape | None:
+    """Return what a name means, as `find_arkit`, and None of any other; it looks for none near."""
+    return _names().get(_normal(name))
 
 
 def arkit_shapes(weights: Mapping[str, float]) -> list[tuple[Shape, float]]:
