@@ -12,6 +12,7 @@ A `with` block closes what it opened.
 from __future__ import annotations
 
 import json
+import os
 import secrets
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -48,13 +49,14 @@ _ON_ITS_WAY = 202
 class Client:
     """One service, spoken to over one connection that stays open."""
 
-    def __init__(self, url: str = DEFAULT_URL, *, key: str = "") -> None:
+    def __init__(self, url: str = DEFAULT_URL, *, key: str | None = None) -> None:
         """Make a client; nothing is sent yet.
 
         Args:
             url: Where the service is.
-            key: One of its keys, where it has any.
+            key: One of its keys, where it has any; None takes it from RISORIUS_API_KEY.
         """
+        key = os.environ.get("RISORIUS_API_KEY", "") if key is None else key
         self.url = url.rstrip("/")
         self.headers = {"X-API-Key": key} if key else {}
         self._http = httpx2.Client(headers=self.headers, timeout=_TIMEOUT_SECONDS)

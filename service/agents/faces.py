@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -10,9 +11,10 @@ from ..bodies import Controls, EmotionCommand, LayerName, ModelChoice
 from ..commands import controls_keyframe, live_model
 from ..components import Components
 from ..emotions import play_emotion
-from ..errors import Unprocessable
+from ..errors import QuotaExceeded, Unprocessable
 from ..facs import with_facs, written
 from ..sessions import Session
+from ..tickets import MAX_SECONDS
 from .answered import EmotionSet, FaceNow, LayerState, OpenedFace, UnitsSet, WriterState
 from .asked import GetState, OpenFace, SetActionUnits, SetEmotion
 from .caller import Caller
@@ -29,7 +31,7 @@ async def open_face(asked: OpenFace, parts: Components, caller: Caller) -> Opene
     sockets = caller.base_url.replace("http", "ws", 1)
     return OpenedFace(
         session_id=session.id,
-        viewer_url=caller.viewer_of(session.id),
+        viewer_url=_page_of(session, parts, caller),
         stream_url=f"{sockets}/api/sessions/{session.id}/stream",
         rig=rig.name or rig.id,
         owner=caller.owner,
@@ -138,3 +140,16 @@ def _held_by(session: Session, owner: str, tick: int) -> dict[str, float]:
     """Return the action units that an owner holds among those that agents set."""
     layer: Any = session.held.report(tick).get(LAYER, {"writers": []})
     return next((w["action_units"] for w in layer["writers"] if w["owner"] == owner), {})
+
+
+def _page_of(session: Session, parts: Components, caller: Caller) -> str:
+    """Return the page of a session; where keys are set, with a ticket that lasts a day."""
+    page = caller.viewer_of(session.id)
+    if not session.made_by:
+        return page
+    with suppress(QuotaExceeded):  # Whoever has so many links out can make one when one is over.
+        ticket = parts.tickets.issue(
+            session.id, key=session.made_by, role="control", seconds=MAX_SECONDS
+        )
+        return f"{page}&ticket={ticket}"
+    return page

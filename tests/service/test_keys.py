@@ -405,17 +405,32 @@ def test_no_agent_finds_what_another_key_made(
     keyed: Keyed, tool: str, field: str, error: str
 ) -> None:
     thing = keyed.session if field == "session_id" else keyed.clip
-    arguments = {field: thing, **TOLD.get(tool, {})}
+    result = called(keyed, "bob", tool, {field: thing, **TOLD.get(tool, {})})
+    assert result["isError"]
+    assert json.loads(result["content"][0]["text"])["error"] == error
+
+
+def called(keyed: Keyed, name: str, tool: str, arguments: dict[str, Any]) -> dict[str, Any]:
+    """Call a tool with the key of that name and return the result."""
     call = {"name": tool, "arguments": arguments}
     answer = keyed.client.post(
         "/mcp/",
         json={"jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": call},
-        headers={**keyed.headers("bob"), "Accept": "application/json, text/event-stream"},
+        headers={**keyed.headers(name), "Accept": "application/json, text/event-stream"},
     )
     assert answer.status_code == 200, answer.text
-    result = answer.json()["result"]
-    assert result["isError"]
-    assert json.loads(result["content"][0]["text"])["error"] == error
+    result: dict[str, Any] = answer.json()["result"]
+    return result
+
+
+def test_the_page_that_an_agent_hands_out_opens_without_a_key(keyed: Keyed) -> None:
+    opened = called(keyed, "ada", "open_face", {})["structuredContent"]
+    session, query = opened["session_id"], opened["viewer_url"].partition("&")[2]
+    assert query.startswith("ticket=")
+    assert denied(keyed.stream(session)) == 401
+    with keyed.stream(session, query=f"?{query}") as socket:
+        first(socket, "hello")
+    keyed.call("ada", "DELETE", f"/api/sessions/{session}")
 
 
 # How much it may take.
