@@ -130,10 +130,17 @@ def serve(
 
 @app.command()
 def clip(
-    source: Annotated[Path, typer.Argument(metavar="IN", help="Timeline, a JSON file.")],
+    source: Annotated[
+        Path, typer.Argument(metavar="IN", help="Timeline, a JSON file, or a tracker's CSV.")
+    ],
     output: Annotated[Path, typer.Option("-o", "--output", help="GLB file to write.")],
     rig: Annotated[str | None, typer.Option(help="Rig to play it on.")] = None,
-    fps: Annotated[int | None, typer.Option(min=1, max=60, help="Frames a second.")] = None,
+    fps: Annotated[
+        int | None,
+        typer.Option(
+            min=1, max=60, help="Frames a second; of a tracker's rows too, where it has no clock."
+        ),
+    ] = None,
     textures: Annotated[
         bool, typer.Option("--textures/--no-textures", help="Embed the maps of skin and eyes.")
     ] = True,
@@ -141,13 +148,35 @@ def clip(
         str, typer.Option(help="Service that renders it, http://name:port; without it, here.")
     ] = "",
     key: Annotated[str, typer.Option(help="Key of that service.", envvar="RISORIUS_API_KEY")] = "",
+    gain: Annotated[float, typer.Option(help="Tracker: factor on every intensity.")] = 1.0,
+    face: Annotated[str | None, typer.Option(help="Tracker: which face of several.")] = None,
+    neutral: Annotated[
+        str,
+        typer.Option(
+            help="Tracker: takes off the face at rest: auto, a share of the frames such as 0.1, "
+            "or the frames that show it, 0-30."
+        ),
+    ] = "",
+    smooth: Annotated[
+        float | None, typer.Option(help="Tracker: one-euro filter, Hz at rest; 0 is off.")
+    ] = None,
+    head: Annotated[bool, typer.Option("--head/--no-head", help="Tracker: move the head.")] = True,
+    gaze: Annotated[bool, typer.Option("--gaze/--no-gaze", help="Tracker: move the eyes.")] = True,
+    seconds: Annotated[float, typer.Option(help="Tracker: longest clip.")] = 120.0,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print what became of a tracker's file as JSON.")
+    ] = False,
 ) -> None:
-    """Render a timeline to an animated GLB file, without a server or by one that runs."""
+    """Render a timeline or a tracker's file to an animated GLB file, here or by a service."""
+    from engine import EngineError, TrackOptions
+
     from .rendering import ClipRefused, render_by_service, render_file
+    from .track_rendering import is_track, neutral_of, render_track_file, report_tables
 
     progress = Progress(
         TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn(), console=_console
     )
+    told = None
     try:
         with progress:
             task = progress.add_task("reading", total=1.0)
@@ -156,12 +185,31 @@ def clip(
                 progress.update(task, description=stage, completed=share)
 
             asked: dict[str, Any] = {"rig": rig, "fps": fps, "textured": textures, "show": show}
-            if url:
+            if is_track(source):
+                if url:
+                    raise ClipRefused("A tracker's file is rendered here: leave --url out.")
+                options = TrackOptions(
+                    fps=fps,
+                    gain=gain,
+                    face=face,
+                    neutral=neutral_of(neutral),
+                    smooth=smooth,
+                    head=head,
+                    gaze=gaze,
+                    max_seconds=seconds,
+                )
+                report, told = render_track_file(source, output, options=options, **asked)
+            elif url:
                 report = render_by_service(source, output, url=url, key=key, **asked)
             else:
                 report = render_file(source, output, **asked)
-    except ClipRefused as refused:
+    except (ClipRefused, EngineError) as refused:
         _refuse(str(refused))
+    if told is not None and as_json:
+        typer.echo(json.dumps(told.to_json(), indent=2))
+    elif told is not None:
+        for table in report_tables(told):
+            _console.print(table)
     _console.print(escape(report), soft_wrap=True)
 
 

@@ -9,7 +9,16 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from engine import EngineError, builtin_rig, clip_to_glb, record, textures_of
+from engine import (
+    EngineError,
+    Model,
+    Rig,
+    Timeline,
+    builtin_rig,
+    clip_to_glb,
+    record,
+    textures_of,
+)
 
 from .bodies import NewClip
 from .commands import clip_timeline, model_of
@@ -47,26 +56,72 @@ def render_file(
     Raises:
         ClipRefused: If the file cannot be read, played or written.
     """
-    _check_folder(output)
+    check_folder(output)
     clip = _read(source)
     clip = clip.model_copy(update={"rig": rig or clip.rig, "fps": fps or clip.fps})
-    started = time.perf_counter()
     try:
         show("building the rig", 0.0)
         chosen = builtin_rig(clip.rig)
         timeline, warnings = clip_timeline(clip, chosen)
         timeline = with_life(timeline, clip, chosen)
+        model = model_of(clip.model, chosen)
+    except (EngineError, Refused) as error:
+        raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
+    line = write_clip(
+        chosen,
+        timeline,
+        source,
+        output,
+        fps=clip.fps,
+        model=model,
+        start=clip.start,
+        show=show,
+        textured=textured and clip.textures,
+    )
+    return "\n".join([line, *warnings])
+
+
+def write_clip(
+    rig: Rig,
+    timeline: Timeline,
+    source: Path,
+    output: Path,
+    *,
+    fps: int,
+    model: Model,
+    show: Show,
+    start: float = 0.0,
+    textured: bool = True,
+) -> str:
+    """Play `timeline` on `rig`, write it to `output` and return one line about it.
+
+    Args:
+        rig: Who performs.
+        timeline: What to do.
+        source: The file that it comes from.
+        output: GLB file to write.
+        fps: Frames a second.
+        model: Forms of the physics.
+        show: Told what is being done, and the share of the work done.
+        start: Seconds that are played and left out of the file.
+        textured: Whether the file embeds the maps of skin and eyes.
+
+    Raises:
+        ClipRefused: If it cannot be played or written.
+    """
+    started = time.perf_counter()
+    try:
         rendered = record(
-            chosen,
+            rig,
             timeline,
-            fps=clip.fps,
-            model=model_of(clip.model, chosen),
+            fps=fps,
+            model=model,
             progress=lambda share: show("simulating", SIMULATION_SHARE * share),
-        ).after(clip.start)
+        ).after(start)
         maps = None
-        if textured and clip.textures:
+        if textured:
             show("baking the textures", SIMULATION_SHARE)
-            maps = textures_of(chosen)
+            maps = textures_of(rig)
         data = clip_to_glb(
             rendered,
             textures=maps,
@@ -75,17 +130,16 @@ def render_file(
             ),
         )
         output.write_bytes(data)
-    except (EngineError, Refused) as error:
+    except EngineError as error:
         raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
     except OSError as error:
         raise ClipRefused(f"{output} cannot be written: {error.strerror}.") from error
     show("done", 1.0)
     seconds = time.perf_counter() - started
-    line = (
-        f"{output}: {len(rendered.poses)} frames, {timeline.duration - clip.start:g} s, "
+    return (
+        f"{output}: {len(rendered.poses)} frames, {timeline.duration - start:g} s, "
         f"{len(data) / 1e6:.1f} MB, in {seconds:.1f} s"
     )
-    return "\n".join([line, *warnings])
 
 
 def render_by_service(
@@ -116,7 +170,7 @@ def render_by_service(
     """
     from .client import Client, ServiceError
 
-    _check_folder(output)
+    check_folder(output)
     clip = _read(source).model_dump(mode="json", exclude_unset=True)
     clip |= {name: value for name, value in (("rig", rig), ("fps", fps)) if value is not None}
     clip |= {} if textured else {"textures": False}
@@ -137,7 +191,12 @@ def render_by_service(
     return "\n".join([line, *report["warnings"]])
 
 
-def _check_folder(output: Path) -> None:
+def check_folder(output: Path) -> None:
+    """Refuse a file in a folder that is not there.
+
+    Raises:
+        ClipRefused: If it is not.
+    """
     if not output.parent.is_dir():
         raise ClipRefused(f"The folder {output.parent} does not exist; make it first.")
 
@@ -148,8 +207,6 @@ def _read(source: Path) -> NewClip:
     Raises:
         ClipRefused: If it is not one.
     """
-    if source.suffix.lower() == ".csv":
-        raise ClipRefused("Tracker files (CSV) are not available yet; give a timeline as JSON.")
     try:
         data = json.loads(source.read_text(encoding="utf-8"))
         return NewClip.model_validate(data)

@@ -81,8 +81,50 @@ def test_a_file_that_cannot_be_rendered_is_refused(
     assert not (tmp_path / "out.glb").exists()
 
 
-def test_a_track_is_not_available_yet(tmp_path: Path) -> None:
-    assert "not available yet" in refused(run("clip", tmp_path / "a.csv", "-o", tmp_path / "b.glb"))
+@pytest.fixture
+def track(tmp_path: Path) -> Path:
+    """A tracker's short file."""
+    path = tmp_path / "laugh.csv"
+    rows = [f"{i},{i / 30:.3f},0.98,1,{i},0.5" for i in range(4)]
+    path.write_text("\n".join(["frame, timestamp, confidence, success, AU12_r, [/odd]", *rows]))
+    return path
+
+
+def test_a_tracker_s_file_is_rendered_and_reported(track: Path, tmp_path: Path) -> None:
+    output = tmp_path / "laugh.glb"
+    result = run("clip", track, "-o", output, "--no-textures", "--fps", 10, "--gain", 2)
+    assert result.exit_code == 0, result.output
+    assert output.read_bytes()[:4] == b"glTF"
+    said = " ".join(result.output.split())
+    assert "OpenFace 2: 6 columns" in said
+    assert "4, of which 4 count" in said
+    assert "2 frames, 0.133333 s" in said
+    result = run("clip", track, "-o", output, "--no-textures", "--fps", 10, "--json")
+    report = json.loads(result.stdout)
+    assert report["units"]["AU12"]["peak"] == 0.6
+    assert report["ignored"] == {"not needed": ["[/odd]"]}
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "said"),
+    [
+        (None, (), "cannot be read"),
+        ("", (), "the file is empty; expected a CSV"),
+        ("name,age\nJoe,7\n", (), "expected those of OpenFace 2"),
+        ("AU12_r\n1\n", ("--neutral", "often"), "expected auto, a share"),
+        ("AU12_r\n1\n", ("--gain", "-1"), "gain is -1.0; expected"),
+        ("AU12_r\n1\n", ("--rig", "nobody"), "no rig"),
+        ("AU12_r\n1\n", ("--url", "http://127.0.0.1:1"), "leave --url out"),
+    ],
+)
+def test_a_tracker_s_file_that_cannot_be_rendered_is_refused(
+    tmp_path: Path, content: str | None, options: tuple[str, ...], said: str
+) -> None:
+    source = tmp_path / "in.csv"
+    if content is not None:
+        source.write_text(content)
+    assert said in refused(run("clip", source, "-o", tmp_path / "out.glb", *options))
+    assert not (tmp_path / "out.glb").exists()
 
 
 def test_a_missing_folder_is_said(timeline: Path, tmp_path: Path) -> None:
