@@ -56,13 +56,13 @@ class Faces:
             raise InvalidTrack(f"there is no face {self.chosen!r} in the file; it has {known}")
 
 
-def chosen_face(layout: Layout, sample: Chunk, gate: Gate, asked: str | None) -> str:
+def chosen_face(layout: Layout, sample: Chunk, gate: Gate, asked: str | int | None) -> str:
     """Return the face that is asked for, or of the first rows the one that is seen best.
 
     That is the one with the most rows that count; of two alike the more confident, then the first.
     """
     if asked is not None and layout.face is not None:
-        return _plain(asked)
+        return _plain(str(asked))
     names = face_names(sample, layout.face)
     counts = np.array(names)[gate.good(sample)] if len(sample) else np.array([])
     own = {name: np.array([each == name for each in names]) for name in dict.fromkeys(names)}

@@ -41,7 +41,7 @@ class TrackOptions:
     gain: float = 1.0
     neutral: float | tuple[int, int] | None = None
     smooth: float | None = None
-    face: str | None = None
+    face: str | int | None = None
     min_confidence: float = 0.5
     max_gap: float = 0.5
     head: bool = True

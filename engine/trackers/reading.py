@@ -13,20 +13,18 @@ import numpy as np
 from ..arrays import BoolArray, Float32Array, FloatArray
 from ..errors import InvalidTrack
 from .clock import settled_clock
-from .columns import grouped, shortened
 from .faces import Faces, chosen_face
 from .gate import Gate
 from .layout import Layout
-from .neutral import neutral_of, without_neutral
-from .notes import notes_of
+from .neutral import Neutral, neutral_of, without_neutral
 from .one_euro import OneEuro
 from .openface import FULL
-from .options import TrackOptions
+from .options import NEUTRAL_QUANTILE, TrackOptions
 from .recognize import recognized
-from .report import ClockReport, TrackReport, UnitReport
 from .resample import Resampler
 from .signals import Signals
 from .statistics import Gaps, Peaks
+from .summary import Counted, summary
 from .table import Chunk, joined
 from .text import text_lines
 from .track import Track
@@ -37,9 +35,6 @@ ROUNDING = 0.001
 """Seconds: OpenFace writes 0.033 and 0.067 for the frames of a video of 30 a second."""
 RATES = (30, 60)
 """Frames a second of a track: two ticks or one lie between frames."""
-NOT_NEEDED = "not needed"
-STUCK_SCORE = 0.95
-"""A classifier's score that never leaves this is no face's. Ours."""
 
 
 def read_track(source: BinaryIO | Path, options: TrackOptions | None = None) -> Track:
@@ -98,7 +93,8 @@ class _Reading:
     def __init__(self, layout: Layout, sample: Chunk, options: TrackOptions) -> None:
         self._layout, self._options = layout, options
         self._doubts: list[str] = []
-        self._gate = Gate(layout, self._full(sample), options.min_confidence)
+        self._gate = Gate(layout, layout.full, options.min_confidence)
+        self._gate.full = self._full(sample, self._gate.good(sample))
         self._faces = Faces(layout, chosen_face(layout, sample, self._gate, options.face))
         own = Faces(layout, self._faces.chosen).own(sample)
         self._clock = settled_clock(layout, sample, own, options.fps)
@@ -118,7 +114,7 @@ class _Reading:
         self._frames: list[Float32Array] = []
         self._seen: list[BoolArray] = []
         self._rows, self._own_rows, self._end = 0, 0, 0.0
-        self._neutral_times: list[float] = []
+        self._neutral = Neutral(options.neutral)
 
     def take(self, chunk: Chunk) -> None:
         """Take the next rows.
@@ -134,7 +130,7 @@ class _Reading:
         times, rising = self._clock.times(chunk, own)
         times = on_frames(times, self.rate)
         counts = passed & rising
-        self._note_neutral(chunk, own, times, counts)
+        self._neutral.take(self._numbered(chunk, own, len(times)), times, counts)
         places = self._own_rows + np.cumsum(rising) - 1
         self._own_rows += int(rising.sum())
         self._end = max(self._end, float(times[-1]))
@@ -161,30 +157,52 @@ class _Reading:
         self._gaps.finish(self._own_rows, self._end)
         self._keep(*self._resampler.finish(self._end))
         frames = np.concatenate(self._frames).astype(np.float64)
+        seen = np.concatenate(self._seen)
         units = len(self._signals.units)
         raw, angles = frames[:, :units], frames[:, units:]
-        neutral, told = self._neutral(raw, np.concatenate(self._seen))
+        neutral, told = self._neutral.found(raw, seen, self.rate)
         played = np.clip(self._options.gain * without_neutral(raw, neutral), 0.0, 1.0)
-        quiet = np.quantile(raw, 0.1, axis=0)
-        kept = [i for i in range(units) if not self._hopeless(i)]
-        report = self._report(header, played, angles, neutral, told, kept, quiet)
+        counted = Counted(
+            header=header,
+            layout=self._layout,
+            options=self._options,
+            signals=self._signals,
+            faces=self._faces,
+            gate=self._gate,
+            gaps=self._gaps,
+            peaks=self._peaks,
+            clock=self._clock,
+            rows=self._rows,
+            end=self._end,
+            doubts=self._doubts,
+        )
+        kept = counted.kept()
         return Track(
             rate=self.rate,
-            units=tuple(self._signals.units[i] for i in kept),
+            units=tuple(self._signals.units[index] for index in kept),
             intensities=np.ascontiguousarray(played[:, kept], dtype=np.float32),
             axes=self._signals.axes,
             angles=np.ascontiguousarray(angles, dtype=np.float32),
-            report=report,
+            report=summary(
+                counted,
+                played=played,
+                angles=angles,
+                neutral=neutral,
+                neutral_told=told,
+                quiet=neutral_of(raw, seen, NEUTRAL_QUANTILE),
+                rate=self.rate,
+                smoothing=self._smooth,
+            ),
         )
 
-    def _full(self, sample: Chunk) -> float:
+    def _full(self, sample: Chunk, good: BoolArray) -> float:
         """Return what the file calls full, by the first rows where the header leaves it open."""
         if self._options.full_scale is not None:
             return self._options.full_scale
         if self._layout.decided:
             return self._layout.full
         places = [self._layout.number_columns.index(n) for n in self._layout.unit_columns]
-        most = float(np.nanmax(sample.numbers[:, places], initial=0.0))
+        most = float(np.nanmax(sample.numbers[good][:, places], initial=0.0))
         if most > self._layout.full:
             self._doubts.append(
                 f"intensities up to {most:g} were taken to be of 5, though files with these "
@@ -193,21 +211,12 @@ class _Reading:
             return FULL
         return self._layout.full
 
-    def _note_neutral(
-        self, chunk: Chunk, own: BoolArray, times: FloatArray, counts: BoolArray
-    ) -> None:
-        """Remember when the frames are that the user calls neutral."""
-        if not isinstance(self._options.neutral, tuple):
-            return
-        first, last = self._options.neutral
+    def _numbered(self, chunk: Chunk, own: BoolArray, count: int) -> FloatArray:
+        """Return the numbers of rows' frames: as the file has them, or as they come, from 0."""
         if self._layout.frame is None:
-            frames = self._own_rows + np.arange(len(times))
-        else:
-            frames = chunk.numbers[own, self._layout.number_columns.index(self._layout.frame)]
-        inside = counts & (frames >= first) & (frames <= last)
-        if inside.any():
-            known = self._neutral_times
-            self._neutral_times = [min([*known, *times[inside]]), max([*known, *times[inside]])]
+            return self._own_rows + np.arange(count, dtype=np.float64)
+        place = self._layout.number_columns.index(self._layout.frame)
+        return np.asarray(chunk.numbers[own, place])
 
     def _keep(self, frames: FloatArray, seen: BoolArray) -> None:
         if len(frames):
@@ -216,107 +225,6 @@ class _Reading:
                 frames = self._filter.filtered(frames / scales) * scales
             self._frames.append(frames.astype(np.float32))
             self._seen.append(seen)
-
-    def _neutral(self, intensities: FloatArray, seen: BoolArray) -> tuple[FloatArray, str | None]:
-        asked = self._options.neutral
-        if asked is None:
-            return np.zeros(intensities.shape[1]), None
-        if not isinstance(asked, tuple):
-            return neutral_of(intensities, seen, asked), f"the clip's quantile {asked:g}"
-        if not self._neutral_times:
-            raise InvalidTrack(
-                f"no row of the frames {asked[0]} to {asked[1]} counts; name frames of the file "
-                "on which the face is found and neutral"
-            )
-        first, last = (round(time * self.rate) for time in self._neutral_times)
-        window = slice(min(first, len(intensities) - 1), last + 1)
-        told = f"the median of the frames {asked[0]} to {asked[1]}"
-        return neutral_of(intensities[window], seen[window], 0.5), told
-
-    def _hopeless(self, index: int) -> bool:
-        """Return whether a unit's scores are stuck at full: no face's."""
-        stuck = self._peaks.stuck[index] and self._layout.scores
-        return stuck and bool(self._peaks.most[index] >= STUCK_SCORE)
-
-    def _report(
-        self,
-        header: list[str],
-        played: FloatArray,
-        angles: FloatArray,
-        neutral: FloatArray,
-        told: str | None,
-        kept: list[int],
-        quiet: FloatArray,
-    ) -> TrackReport:
-        peaks, clock = self._peaks, self._clock
-        speeds = _speeds(played, self.rate)
-        names = self._signals.units
-        units = {
-            names[i]: UnitReport(
-                columns=self._signals.columns[names[i]],
-                peak=float(peaks.most[i]),
-                peak_speed=float(peaks.speed[i]),
-                neutral=float(neutral[i]),
-                played=float(played[:, i].max()),
-                played_speed=float(speeds[i]),
-                stuck=peaks.stuck[i],
-            )
-            for i in kept
-        }
-        hopeless = [i for i in range(len(names)) if i not in kept]
-        duration = len(played) / self.rate
-        report = TrackReport(
-            tracker=self._layout.tracker,
-            layout=self._layout.version,
-            columns=len(header),
-            rows=self._rows,
-            faces={} if self._layout.face is None else dict(self._faces.rows),
-            face=self._faces.chosen,
-            used=peaks.rows,
-            dropped=dict(self._gate.dropped),
-            filled=self._gaps.filled,
-            lost=self._gaps.lost,
-            gaps=self._gaps.count,
-            longest_gap=self._gaps.longest,
-            held=self._gate.held,
-            clock=ClockReport(
-                clock.source,
-                clock.start or 0.0,
-                clock.step,
-                dict(clock.repairs),
-                tuple(clock.doubts),
-            ),
-            rate=self.rate,
-            frames=len(played),
-            duration=duration,
-            left_out=max(0.0, self._end - duration),
-            units=units,
-            ignored=self._ignored(header, hopeless),
-            angles={
-                f"{group}.{axis}": float(speed)
-                for (group, axis), speed in zip(
-                    self._signals.axes, _speeds(angles, self.rate), strict=True
-                )
-            },
-            gain=self._options.gain,
-            neutral=told,
-            smoothing=self._smooth,
-        )
-        low = {names[i]: float(quiet[i]) for i in kept}
-        return replace(report, notes=(*self._doubts, *notes_of(report, self._layout, low)))
-
-    def _ignored(self, header: list[str], hopeless: list[int]) -> dict[str, tuple[str, ...]]:
-        """Return the columns that are not played, by reason, those of one kind together."""
-        used = {*self._layout.number_columns, *self._layout.text_columns}
-        reasons = {name.lower(): reason for name, reason in self._layout.ignored.items()}
-        ignored: dict[str, list[str]] = {}
-        for i in hopeless:
-            why = f"stuck at {self._peaks.most[i]:g} in every row, as no face is"
-            ignored.setdefault(why, []).extend(self._signals.columns[self._signals.units[i]])
-        for name, count in grouped(each for each in header if each not in used).items():
-            shown = f"{name} ({count})" if count > 1 else name
-            ignored.setdefault(reasons.get(name.lower(), NOT_NEEDED), []).append(shown)
-        return {why: shortened(names) for why, names in ignored.items()}
 
 
 def track_rate(step: float) -> int:
@@ -333,10 +241,3 @@ def on_frames(times: FloatArray, rate: int) -> FloatArray:
     """Return times [s] with those within `ROUNDING` of a frame at it."""
     frames = np.round(times * rate) / rate
     return np.where(np.abs(times - frames) <= ROUNDING, frames, times)
-
-
-def _speeds(signals: FloatArray, rate: int) -> FloatArray:
-    """Return the fastest change of each signal, a second, shape (signals,)."""
-    if len(signals) < 2:
-        return np.zeros(signals.shape[1])
-    return np.asarray(np.abs(np.diff(signals, axis=0)).max(axis=0) * rate)

@@ -69,6 +69,11 @@ def test_twenty_six_columns_that_go_beyond_one_are_not_and_it_is_said() -> None:
     assert unit(read(data, full_scale=10.0), "AU12") == pytest.approx([0.1, 0.2, 0.3])
 
 
+def test_rows_that_do_not_count_do_not_tell_the_scale() -> None:
+    values = {"AU12_r": [0.2, 4.5, 0.6], "success": [1.0, 0.0, 1.0]}
+    assert unit(read(openface(values, 3, columns=26)), "AU12") == pytest.approx([0.2, 0.4, 0.6])
+
+
 def test_openface_3_by_index_is_refused_unless_there_is_a_map() -> None:
     header = ["frame", "timestamp", *(f"AU{index:02d}_r" for index in range(1, 9))]
     rows = [[str(i), str(i / 30), *(["0.1"] * 7), "0.9"] for i in range(3)]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tracker_files import openface, read, unit
+from tracker_files import csv_of, openface, read, unit
 
 from engine import InvalidTrack, InvalidValue, Rig, Timeline, TrackOptions, track_timeline
 from engine.mixing import Mixer
@@ -48,6 +48,12 @@ def test_neutral_frames_are_named_as_the_file_numbers_them() -> None:
     assert track.report.units["AU4"].neutral == pytest.approx(0.2)
     with pytest.raises(InvalidTrack, match="frames 90 to 99"):
         read(data, neutral=(90, 99))
+
+
+def test_neutral_frames_of_a_file_without_numbers_count_from_0() -> None:
+    rows = [[str(i / 30), value] for i, value in enumerate(["5", "5", "1", "1", "3"])]
+    track = read(csv_of(["timestamp", "AU04_r"], rows), neutral=(2, 3))
+    assert track.report.units["AU4"].neutral == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize(
