@@ -77,6 +77,11 @@ class OpenFace(Body):
         description="Whose face: standard, one of the people, or paper, the literal model of the "
         "paper.",
     )
+    alive: StrictBool = Field(
+        default=False,
+        description="Whether it blinks, glances and sways by itself while somebody watches; what "
+        "is set comes first.",
+    )
 
 
 class SetEmotion(Body):

@@ -7,12 +7,13 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from ..bodies import Controls, EmotionCommand, LayerName, ModelChoice
+from ..bodies import Controls, EmotionCommand, IdleLife, LayerName, ModelChoice
 from ..commands import controls_keyframe, live_model
 from ..components import Components
 from ..emotions import play_emotion
 from ..errors import QuotaExceeded, Unprocessable
 from ..facs import with_facs, written
+from ..idle import idle_of
 from ..sessions import Session
 from ..tickets import MAX_SECONDS
 from .answered import EmotionSet, FaceNow, LayerState, OpenedFace, UnitsSet, WriterState
@@ -27,7 +28,8 @@ _POSED = ("jaw", "gaze", "head", "tongue")
 async def open_face(asked: OpenFace, parts: Components, caller: Caller) -> OpenedFace:
     """Open a session, a face at rest."""
     rig = await parts.rigs.get(asked.rig)
-    session = await parts.sessions.open(rig, live_model(ModelChoice(), rig))
+    idle = idle_of(IdleLife() if asked.alive else None)
+    session = await parts.sessions.open(rig, live_model(ModelChoice(), rig), idle)
     sockets = caller.base_url.replace("http", "ws", 1)
     return OpenedFace(
         session_id=session.id,

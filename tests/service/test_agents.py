@@ -111,6 +111,17 @@ async def test_the_tools_are_described_for_a_model(url: str) -> None:
     assert reading == {"list_expressions", "get_state"}
 
 
+async def test_a_face_lives_if_an_agent_says_so(url: str) -> None:
+    lives = {}
+    async with agent(url) as client, httpx2.AsyncClient(headers={"X-API-Key": "secret"}) as http:
+        for alive in (True, False):
+            face = (await call(client, "open_face", alive=alive))["session_id"]
+            lives[alive] = (await http.get(f"{url}/api/sessions/{face}")).json()["idle"]
+            await http.delete(f"{url}/api/sessions/{face}")
+    assert lives[True]["blinks"] == 1.0
+    assert lives[False] is None
+
+
 async def test_an_agent_opens_a_face_and_makes_it_feel(url: str) -> None:
     async with agent(url) as client:
         face = await call(client, "open_face")
@@ -188,6 +199,7 @@ async def test_a_mixture_with_a_hold_passes_by_itself(url: str) -> None:
         ("set_action_units", {}, "invalid_body", None),
         ("get_state", {"session_id": "nobody"}, "unknown_session", None),
         ("open_face", {"rig": "nobody"}, "unknown_rig", None),
+        ("open_face", {"alive": "yes"}, "invalid_arguments", None),
         ("list_expressions", {"vocabulary": "big7"}, "unknown_vocabulary", None),
         ("export_clip", {}, "invalid_body", None),
         ("export_clip", {"timeline": [{"time": 0.0}]}, "invalid_body", None),
