@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from ..arrays import FloatArray
 
 Reader = Callable[[FloatArray], FloatArray]
+SCORE_SMOOTH = 1.5
+"""Cutoff at rest of the filter of scores, Hz: they flicker where a face does not. Ours."""
 
 
 @dataclass(frozen=True)

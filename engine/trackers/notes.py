@@ -58,8 +58,8 @@ def _about_rows(report: TrackReport) -> Iterator[str]:
         )
     if report.left_out > 1.0:
         yield (
-            f"{report.left_out:.0f} s of it lie beyond the longest clip and are not played; cut "
-            "the file to play them"
+            f"{report.left_out:.0f} s of it lie beyond the longest clip and are not played; ask "
+            "for a longer one, or cut the file"
         )
     if report.held:
         yield f"{report.held} values a little beyond their range were held to it"

@@ -20,7 +20,7 @@ from ..errors import InvalidNotation, InvalidTrack
 from ..facs import split_side
 from .angles import HALF_TURN, sight_of
 from .columns import Columns
-from .layout import Layout, TimeColumn, Turn, UnitColumn
+from .layout import SCORE_SMOOTH, Layout, TimeColumn, Turn, UnitColumn
 
 INTENSITIES = frozenset({1, 2, 4, 5, 6, 7, 9, 10, 12, 14, 15, 17, 20, 23, 25, 26, 45})
 """The units whose intensity OpenFace 2 estimates."""
@@ -112,7 +112,7 @@ def mapped_layout(columns: Columns, au_map: Mapping[str, str]) -> Layout:
             version=f"{len(units)} units",
             units=tuple(units),
             scores=True,
-            smooth=1.5,
+            smooth=SCORE_SMOOTH,
         ),
     )
 

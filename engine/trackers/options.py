@@ -28,8 +28,9 @@ class TrackOptions:
             it to the tracker: on for classifiers' scores, off for intensities.
         face: Which face of several, as the file names them; None takes the one seen most.
         min_confidence: Rows of a lower confidence are dropped.
-        max_gap: Seconds without a row that are filled in a straight line; over longer ones the
-            face goes to rest and comes back.
+        max_gap: Seconds without a row that are filled in a straight line, or two and a half of the
+            file's usual steps if these are longer; over longer gaps the face goes to rest and comes
+            back.
         head: Whether the head moves.
         gaze: Whether the eyes move.
         full_scale: What the file calls full intensity, where the header leaves it open.

@@ -16,13 +16,11 @@ from ..errors import InvalidTrack
 from .angles import sight_of, turns_of
 from .blendshapes import shapes_of
 from .columns import Columns
-from .layout import Layout, Reader, TimeColumn, Turn, UnitColumn
+from .layout import SCORE_SMOOTH, Layout, Reader, TimeColumn, Turn, UnitColumn
 
 UNITS = frozenset({1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 14, 15, 17, 20, 23, 24, 25, 26, 28, 43})
 """The units of py-feat; those of OpenFace 3, which some tools write under these names, are
 among them."""
-SMOOTH = 1.5
-"""Cutoff at rest of the filter of scores, Hz: they flicker where a face does not. Ours."""
 _UNIT = re.compile(r"au_?(\d+)")
 _FEELINGS = (
     *("anger", "disgust", "fear", "happiness", "sadness", "surprise", "neutral"),
@@ -67,7 +65,7 @@ def pyfeat_layout(columns: Columns) -> Layout | None:
         success=columns.find("success"),
         head=_head(columns, radians=second),
         gaze=_gaze(columns),
-        smooth=SMOOTH,
+        smooth=SCORE_SMOOTH,
         ignored={
             "Identity_#": "embeddings of the face: they are never read",
             "mesh_x_#": "landmarks",

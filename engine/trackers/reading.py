@@ -31,6 +31,8 @@ from .track import Track
 
 SAMPLE_ROWS = 2048
 """First rows by which is settled what a header leaves open: face, clock, scale."""
+SPARSE = 2.5
+"""Usual steps that are no gap: of a file with a row a second, too, one may be missing. Ours."""
 ROUNDING = 0.001
 """Seconds: OpenFace writes 0.033 and 0.067 for the frames of a video of 30 a second."""
 RATES = (30, 60)
@@ -103,14 +105,15 @@ class _Reading:
         self.rate = track_rate(self._clock.step)
         self._smooth = layout.smooth if options.smooth is None else options.smooth
         signals = len(self._signals.resting)
+        max_gap = max(options.max_gap, SPARSE * self._clock.step)
         self._resampler = Resampler(
             self.rate,
             max(1, int(options.max_seconds * self.rate + 1e-6)),
-            options.max_gap,
+            max_gap,
             self._signals.resting,
         )
         self._filter = OneEuro(self.rate, self._smooth) if self._smooth else None
-        self._gaps, self._peaks = Gaps(options.max_gap), Peaks(signals, options.max_gap)
+        self._gaps, self._peaks = Gaps(max_gap), Peaks(signals, max_gap)
         self._frames: list[Float32Array] = []
         self._seen: list[BoolArray] = []
         self._rows, self._own_rows, self._end = 0, 0, 0.0

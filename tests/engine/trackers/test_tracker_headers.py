@@ -158,6 +158,12 @@ def test_frames_that_step_by_two_take_twice_as_long() -> None:
     assert len(read(pyfeat(0, rows=11, step=1), fps=30)) == 11
 
 
+def test_a_file_with_a_row_a_second_is_no_gap() -> None:
+    track = read(pyfeat(0, rows=5, step=30), fps=30)
+    assert track.report.gaps == 0
+    assert unit(track, "AU12") == pytest.approx([0.5] * len(track))
+
+
 def test_a_score_that_is_stuck_at_full_is_left_out_and_an_intensity_is_played() -> None:
     header = ["frame", "AU12", "AU20"]
     rows = [[str(i), f"{0.5 + 0.2 * (i % 2)}", "1.0"] for i in range(40)]
