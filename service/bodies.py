@@ -331,7 +331,7 @@ Amount = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=MOST_
 
 
 class IdleLife(Body):
-    """What a face does while nobody asks anything of it; each part times the usual, 0 has none."""
+    """What a face does while nobody asks anything of it: parts times the usual, none below 0.01."""
 
     seed: Annotated[int, Field(strict=True, ge=0, le=_MOST)] | None = Field(
         default=None,

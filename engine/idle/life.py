@@ -18,6 +18,9 @@ from .sway import head_keyframes
 
 MOST_LIFE = 2.0
 """Most of each part, times the usual."""
+LEAST_LIFE = 0.01
+"""Below it a part has none: what comes once in a year would have to be sought through all that
+comes before, without end for a number that is nearly 0."""
 LETS_GO_OF_LIFE = 0.5
 """Seconds over which a life that ends lets go of the face."""
 _SEEDS = 2**32
@@ -29,7 +32,7 @@ class Idle:
 
     Attributes:
         seed: Chooses when and where, 0 to 2^32 - 1.
-        blinks: How many, times the usual; as of the rest, 0 has none and 2 is the most.
+        blinks: How many, times the usual; as of the rest, less than 0.01 is none and 2 the most.
         gaze: How far the eyes go.
         head: How far the head sways, and how much of a glance it takes.
         micro: How many brief expressions.
@@ -59,14 +62,18 @@ def idle_keyframes(idle: Idle, units: Collection[str]) -> Iterator[Keyframe]:
         idle: Which life.
         units: Names of the rig's action units: what needs others is left out.
     """
-    for_eyes, for_head, for_lids = tee(shifts(idle.seed, idle.gaze, idle.head), 3)
+    blinks, gaze, head, micro = (
+        amount if amount >= LEAST_LIFE else 0.0
+        for amount in (idle.blinks, idle.gaze, idle.head, idle.micro)
+    )
+    for_eyes, for_head, for_lids = tee(shifts(idle.seed, gaze, head), 3)
     parts = [
         gaze_keyframes(for_eyes),
-        head_keyframes(idle.seed, idle.head, for_head),
-        flash_keyframes(idle.seed, idle.micro, units),
+        head_keyframes(idle.seed, head, for_head),
+        flash_keyframes(idle.seed, micro, units),
     ]
     if BLINK in units:
-        parts.append(blink_keyframes(idle.seed, idle.blinks, for_lids))
+        parts.append(blink_keyframes(idle.seed, blinks, for_lids))
     return heapq.merge(*parts, key=lambda keyframe: keyframe.time)
 
 

@@ -182,6 +182,15 @@ def test_parts_do_not_shift_each_other() -> None:
     assert eyes(Idle(seed=9)) == eyes(Idle(seed=9, blinks=2.0, micro=0.0))
 
 
+@pytest.mark.parametrize("part", ["blinks", "gaze", "head", "micro"])
+@pytest.mark.parametrize("little", [5e-324, 1e-200, 1e-9, 0.009])
+def test_next_to_nothing_is_nothing(part: str, little: float) -> None:
+    """What comes next to never was sought for ever."""
+    none, nearly = (Idle(**{"seed": 3, part: amount}) for amount in (0.0, little))  # type: ignore[arg-type]
+    first = list(islice(idle_keyframes(none, UNITS), 100))
+    assert list(islice(idle_keyframes(nearly, UNITS), 100)) == first
+
+
 def test_a_rig_without_a_unit_leaves_out_what_needs_it() -> None:
     told = lived(Idle(seed=1, micro=2.0), HOUR, frozenset({"AU4"}))
     assert {key for each in told for key in each.action_units} == {"AU4"}
