@@ -22,7 +22,7 @@ SMILE = {
 
 
 def test_a_short_clip_is_waited_for(client: TestClient) -> None:
-    answer = client.post("/api/clips", params={"wait": 30}, json=SMILE)
+    answer = client.post("/api/clips", params={"wait": 60}, json=SMILE)
     assert answer.status_code == 200, answer.text
     assert answer.headers["Content-Type"] == "model/gltf-binary"
     assert answer.content[:4] == b"glTF"
