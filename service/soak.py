@@ -21,6 +21,8 @@ from rich.table import Table
 from websockets.exceptions import WebSocketException
 
 from .benching import machine
+from .gaps import gaps_seen
+from .load import TICK_SECONDS
 from .priority import AWAITED, stand_back
 from .soak_client import Client, Counts, SoakRefused, Viewer, own_service
 
@@ -33,6 +35,7 @@ MOST_GROWTH_BYTES = 16e6
 _MEMORY_PARTS = 8
 _SEED = 1
 _MOST_SESSIONS = 200
+_GAP_SECONDS = 20.0
 _SETTLE_SECONDS = 3.0
 """Between two sessions while the capacity is found: the smoothed cost follows within two."""
 _COMMAND_SECONDS = 1.0
@@ -116,9 +119,17 @@ def soak(*, minutes: float, share: float, url: str | None, show: Show) -> dict[s
     Raises:
         SoakRefused: If there is no service to load.
     """
+    show("looking for gaps of the machine itself")
+    looked = min(_GAP_SECONDS, 6.0 * minutes)
+    own = gaps_seen(looked, least=TICK_SECONDS / 2.0, cores=machine()["cores"])
     with nullcontext(url) if url is not None else own_service() as address:
         stand_back(AWAITED)  # Only now: a process that is started takes the priority over.
-        return asyncio.run(_Soak(address, share, show).run(60.0 * minutes))
+        figures = asyncio.run(_Soak(address, share, show).run(60.0 * minutes))
+    return {
+        **figures,
+        "machine_gaps_a_minute": round(60.0 * len(own) / looked, 1),
+        "machine_longest_gap_ms": round(1000.0 * max(own, default=0.0), 1),
+    }
 
 
 def verdict(figures: dict[str, Any]) -> list[str]:
