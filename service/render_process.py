@@ -105,12 +105,17 @@ def _rig(root: str, steps: str) -> Rig:
 
 def _write(path: Path, data: bytes) -> None:
     """Write a file that is there as a whole or not at all, also if this process is killed."""
-    part = path.with_name(f"{path.name}.{os.getpid()}")
+    part = part_of(path, os.getpid())
     try:
         part.write_bytes(data)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def part_of(path: Path, process: int) -> Path:
+    """Return where a process writes what becomes the file at `path` once it is whole."""
+    return path.with_name(f"{path.name}.{process}")
 
 
 class _News:

@@ -17,7 +17,7 @@ from typing import Any
 
 from .apart import environment
 from .errors import Unprocessable
-from .render_process import Order
+from .render_process import Order, part_of
 
 _KEPT_SECONDS = 60.0
 """For which a process waits for its next clip: it takes a second to start, and 150 MB."""
@@ -53,6 +53,8 @@ class Renderer:
             raise
         except BaseException:
             await _end(process)
+            for path in (order.glb, order.csv):  # It had no time to do so where it was killed.
+                part_of(path, process.pid).unlink(missing_ok=True)
             raise
         self._keep(process)
         return figures
@@ -109,7 +111,7 @@ async def _carried_out(
 
 
 async def _end(process: Process) -> None:
-    """Kill a process: it writes files whole or not at all."""
+    """Kill a process."""
     with suppress(ProcessLookupError):
         process.kill()
     await process.wait()

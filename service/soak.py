@@ -12,7 +12,7 @@ import asyncio
 import random
 import time
 from collections.abc import Callable
-from contextlib import AsyncExitStack, nullcontext
+from contextlib import AsyncExitStack
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -119,17 +119,23 @@ def soak(*, minutes: float, share: float, url: str | None, show: Show) -> dict[s
     Raises:
         SoakRefused: If there is no service to load.
     """
+    if url is not None:  # Its machine may be another one.
+        return _loaded(url, minutes, share, show)
     show("looking for gaps of the machine itself")
     looked = min(_GAP_SECONDS, 6.0 * minutes)
     own = gaps_seen(looked, least=TICK_SECONDS / 2.0, cores=machine()["cores"])
-    with nullcontext(url) if url is not None else own_service() as address:
-        stand_back(AWAITED)  # Only now: a process that is started takes the priority over.
-        figures = asyncio.run(_Soak(address, share, show).run(60.0 * minutes))
+    with own_service() as address:
+        figures = _loaded(address, minutes, share, show)
     return {
         **figures,
         "machine_gaps_a_minute": round(60.0 * len(own) / looked, 1),
         "machine_longest_gap_ms": round(1000.0 * max(own, default=0.0), 1),
     }
+
+
+def _loaded(address: str, minutes: float, share: float, show: Show) -> dict[str, Any]:
+    stand_back(AWAITED)  # Only now: a process that is started takes the priority over.
+    return asyncio.run(_Soak(address, share, show).run(60.0 * minutes))
 
 
 def verdict(figures: dict[str, Any]) -> list[str]:

@@ -17,7 +17,7 @@ import pytest
 from engine import Keyframe, Model, Timeline, builtin_rig
 from service.errors import Unprocessable
 from service.priority import BEHIND
-from service.render_process import Order, carry_out
+from service.render_process import Order, carry_out, part_of
 from service.renderer import Renderer, RenderingEnded
 
 SMILE = Keyframe(action_units={"AU12": 1.0})
@@ -107,6 +107,7 @@ def test_what_is_stopped_or_killed_leaves_no_file(tmp_path: Path) -> None:
         moving.clear()
         task = asyncio.create_task(renderer.render(long, lambda share: moving.set()))
         await moving.wait()
+        part_of(long.glb, started[1].pid).write_bytes(b"half of it")
         os.kill(started[1].pid, signal.SIGKILL)
         with pytest.raises(RenderingEnded, match="-9"):
             await task
