@@ -128,6 +128,14 @@ def serve(
         )
 
 
+def _show_schema(wanted: bool) -> None:
+    if wanted:
+        from .schemas import timeline_schema
+
+        typer.echo(json.dumps(timeline_schema(), indent=2))
+        raise typer.Exit
+
+
 @app.command()
 def clip(
     source: Annotated[
@@ -144,6 +152,12 @@ def clip(
     textures: Annotated[
         bool, typer.Option("--textures/--no-textures", help="Embed the maps of skin and eyes.")
     ] = True,
+    csv: Annotated[
+        bool,
+        typer.Option(
+            "--csv", help="Write its ground truth beside it, OUT.truth.csv: units, muscles, points."
+        ),
+    ] = False,
     url: Annotated[
         str, typer.Option(help="Service that renders it, http://name:port; without it, here.")
     ] = "",
@@ -166,11 +180,20 @@ def clip(
     as_json: Annotated[
         bool, typer.Option("--json", help="Print what became of a tracker's file as JSON.")
     ] = False,
+    _schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema",
+            callback=_show_schema,
+            is_eager=True,
+            help="Print the JSON Schema of a timeline, and do nothing else.",
+        ),
+    ] = False,
 ) -> None:
     """Render a timeline or a tracker's file to an animated GLB file, here or by a service."""
     from engine import EngineError, TrackOptions
 
-    from .rendering import ClipRefused, render_by_service, render_file
+    from .rendering import ClipRefused, render_by_service, render_file, truth_of
     from .track_rendering import is_track, neutral_of, render_track_file, report_tables
 
     progress = Progress(
@@ -185,6 +208,9 @@ def clip(
                 progress.update(task, description=stage, completed=share)
 
             asked: dict[str, Any] = {"rig": rig, "fps": fps, "textured": textures, "show": show}
+            truth = truth_of(output) if csv else None
+            if url and csv:
+                raise ClipRefused("Ground truth is written here: leave --url out.")
             if is_track(source):
                 if url:
                     raise ClipRefused("A tracker's file is rendered here: leave --url out.")
@@ -198,11 +224,13 @@ def clip(
                     gaze=gaze,
                     max_seconds=seconds,
                 )
-                report, told = render_track_file(source, output, options=options, **asked)
+                report, told = render_track_file(
+                    source, output, options=options, csv=truth, **asked
+                )
             elif url:
                 report = render_by_service(source, output, url=url, key=key, **asked)
             else:
-                report = render_file(source, output, **asked)
+                report = render_file(source, output, csv=truth, **asked)
     except (ClipRefused, EngineError) as refused:
         _refuse(str(refused))
     if told is not None and as_json:

@@ -18,12 +18,25 @@ from .bodies import (
 )
 from .clashes import clashes
 from .emotions import Turns, play_emotion
-from .errors import Unprocessable, refused_by_engine
+from .errors import Refused, Unprocessable, refused_by_engine
 from .facs import playable
 from .shapes import shaped
 
 _OF_BOTH = ("layer", "owner", "weight", "hold", "ttl", "fade_out")
 """What a keyframe of a clip and the emotion in it may both say."""
+_MOVES = (
+    "facs",
+    "action_units",
+    "muscles",
+    "jaw",
+    "gaze",
+    "head",
+    "tongue",
+    "arkit",
+    "visemes",
+    "emotion",
+)
+"""The fields of a keyframe that name something of a rig."""
 
 
 def controls_keyframe(controls: Controls, rig: Rig, *, replace: bool) -> Keyframe:
@@ -70,9 +83,11 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
             keyframe = _clip_keyframe(body, rig, turns)
             found = rig.check(keyframe) + [str(clash) for clash in clashes(body, keyframe, rig)]
             warnings += [f"keyframe {index}: {warning}" for warning in found]
-        except EngineError as error:
-            refused = refused_by_engine(error)
-            refused.message = f"keyframe {index}: {refused.message}"
+        except (EngineError, Refused) as error:
+            refused = refused_by_engine(error) if isinstance(error, EngineError) else error
+            place = _field_at_fault(body, rig)
+            where = f"{place}: " if place and not refused.message.startswith(place) else ""
+            refused.message = f"keyframe {index}: {where}{refused.message}"
             raise refused from error
         keyframes.append(keyframe)
     try:
@@ -137,6 +152,21 @@ def _clip_keyframe(body: KeyframeBody, rig: Rig, turns: Turns) -> Keyframe:
     if body.emotion is not None:
         keyframe = _with_emotion(keyframe, body, rig, turns)
     return replace(keyframe, time=body.time)
+
+
+def _field_at_fault(body: KeyframeBody, rig: Rig) -> str:
+    """Return the field by which alone a keyframe cannot be played; none where it is no single one.
+
+    A rig says what is wrong, and not where that was said: each field is tried by itself.
+    """
+    for name in _MOVES:
+        if name in body.model_fields_set:
+            given = {"time": body.time, "scale": body.scale, name: getattr(body, name)}
+            try:
+                rig.check(_clip_keyframe(KeyframeBody.model_validate(given), rig, Counter()))
+            except (EngineError, Refused):
+                return name
+    return ""
 
 
 def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig, turns: Turns) -> Keyframe:

@@ -44,6 +44,10 @@ class Refused(Exception):
         self.known = None if known is None else list(known)
         self.headers: dict[str, str] = {}
 
+    def __str__(self) -> str:
+        """Return the sentence, with what was added to it since."""
+        return self.message
+
     def body(self) -> dict[str, object]:
         """Return the JSON body of the answer."""
         return error_body(self.error, self.message, known=self.known)

@@ -45,7 +45,7 @@ class Order:
         level: Of detail.
         textures: Maps of skin and eyes that the file embeds, by file name; none for colours.
         glb: File to write.
-        csv: File for its ground truth.
+        csv: File for its ground truth, if wanted.
     """
 
     root: str
@@ -57,7 +57,7 @@ class Order:
     level: str
     textures: Mapping[str, bytes]
     glb: Path
-    csv: Path
+    csv: Path | None
 
 
 def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
@@ -88,7 +88,8 @@ def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
         progress=lambda share: show(SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share),
     )
     _write(order.glb, data)
-    _write(order.csv, ground_truth_csv(drawn, order.timeline, order.start).encode())
+    if order.csv is not None:
+        _write(order.csv, ground_truth_csv(drawn, order.timeline, order.start).encode())
     return {
         "frames": len(clip),
         "duration": clip.duration if order.start else order.timeline.duration,

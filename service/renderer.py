@@ -53,7 +53,7 @@ class Renderer:
             raise
         except BaseException:
             await _end(process)
-            for path in (order.glb, order.csv):  # It had no time to do so where it was killed.
+            for path in filter(None, (order.glb, order.csv)):  # It had no time to: it was killed.
                 part_of(path, process.pid).unlink(missing_ok=True)
             raise
         self._keep(process)

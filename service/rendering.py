@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from engine import (
-    EngineError,
-    Model,
-    Rig,
-    Timeline,
-    builtin_rig,
-    clip_to_glb,
-    record,
-    textures_of,
-)
+from engine import EngineError, Rig, builtin_rig, textures_of
 
 from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Refused
 from .explaining import explain
 from .idle import with_life
-from .render_process import SIMULATION_SHARE
+from .render_process import SIMULATION_SHARE, Order, carry_out
 
 Show = Callable[[str, float], None]
 
@@ -42,6 +32,7 @@ def render_file(
     fps: int | None,
     show: Show,
     textured: bool = True,
+    csv: Path | None = None,
 ) -> str:
     """Render `source` to `output` and return one line about it.
 
@@ -52,6 +43,7 @@ def render_file(
         fps: Overrides the file's frame rate.
         show: Told what is being done, and the share of the work done.
         textured: Whether the file embeds the maps of skin and eyes, unless the timeline says no.
+        csv: File for its ground truth, if wanted.
 
     Raises:
         ClipRefused: If the file cannot be read, played or written.
@@ -67,78 +59,53 @@ def render_file(
         model = model_of(clip.model, chosen)
     except (EngineError, Refused) as error:
         raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
-    line = write_clip(
-        chosen,
-        timeline,
-        source,
-        output,
+    order = Order(
+        root=clip.rig,
+        steps=(),
+        timeline=timeline,
         fps=clip.fps,
         model=model,
         start=clip.start,
-        show=show,
-        textured=textured and clip.textures,
+        level=clip.level,
+        textures=maps_of(chosen, show) if textured and clip.textures else {},
+        glb=output,
+        csv=csv,
     )
-    return "\n".join([line, *warnings])
+    return "\n".join([written(order, source, show), *warnings])
 
 
-def write_clip(
-    rig: Rig,
-    timeline: Timeline,
-    source: Path,
-    output: Path,
-    *,
-    fps: int,
-    model: Model,
-    show: Show,
-    start: float = 0.0,
-    textured: bool = True,
-) -> str:
-    """Play `timeline` on `rig`, write it to `output` and return one line about it.
+def maps_of(rig: Rig, show: Show) -> Mapping[str, bytes]:
+    """Return the maps of skin and eyes that a file of `rig` embeds, baked if nobody has."""
+    show("baking the textures", 0.0)
+    return textures_of(rig)
+
+
+def written(order: Order, source: Path, show: Show) -> str:
+    """Carry out `order` here, and return one line about its file.
 
     Args:
-        rig: Who performs.
-        timeline: What to do.
+        order: What to render, and where to.
         source: The file that it comes from.
-        output: GLB file to write.
-        fps: Frames a second.
-        model: Forms of the physics.
         show: Told what is being done, and the share of the work done.
-        start: Seconds that are played and left out of the file.
-        textured: Whether the file embeds the maps of skin and eyes.
 
     Raises:
         ClipRefused: If it cannot be played or written.
     """
-    started = time.perf_counter()
+
+    def told(share: float) -> None:
+        show("simulating" if share < SIMULATION_SHARE else "writing", share)
+
     try:
-        rendered = record(
-            rig,
-            timeline,
-            fps=fps,
-            model=model,
-            progress=lambda share: show("simulating", SIMULATION_SHARE * share),
-        ).after(start)
-        maps = None
-        if textured:
-            show("baking the textures", SIMULATION_SHARE)
-            maps = textures_of(rig)
-        data = clip_to_glb(
-            rendered,
-            textures=maps,
-            progress=lambda share: show(
-                "writing", SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share
-            ),
-        )
-        output.write_bytes(data)
+        figures = carry_out(order, told)
     except EngineError as error:
         raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
     except OSError as error:
-        raise ClipRefused(f"{output} cannot be written: {error.strerror}.") from error
+        raise ClipRefused(f"{order.glb} cannot be written: {error.strerror}.") from error
     show("done", 1.0)
-    seconds = time.perf_counter() - started
+    seconds = figures["simulation_seconds"] + figures["writing_seconds"]
     return (
-        f"{output}: {len(rendered.poses)} frames, {timeline.duration - start:g} s, "
-        f"{len(data) / 1e6:.1f} MB, in {seconds:.1f} s"
+        f"{order.glb}: {figures['frames']} frames, {figures['duration']:g} s, "
+        f"{figures['bytes'] / 1e6:.1f} MB, in {seconds:.1f} s"
     )
 
 
@@ -199,6 +166,11 @@ def check_folder(output: Path) -> None:
     """
     if not output.parent.is_dir():
         raise ClipRefused(f"The folder {output.parent} does not exist; make it first.")
+
+
+def truth_of(output: Path) -> Path:
+    """Return the file of a clip's ground truth, beside it: its source may be called laugh.csv."""
+    return output.with_suffix(".truth.csv")
 
 
 def _read(source: Path) -> NewClip:

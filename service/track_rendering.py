@@ -20,12 +20,14 @@ from engine import (
     track_timeline,
 )
 
-from .rendering import ClipRefused, Show, check_folder, write_clip
+from .render_process import Order
+from .rendering import ClipRefused, Show, check_folder, maps_of, written
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".jsonl", ".ndjson")
 """Of the files that trackers write."""
 DEFAULT_FPS = 30
 DEFAULT_RIG = "standard"
+DEFAULT_LEVEL = "high"
 _MOST_NOTES = 20
 
 
@@ -62,6 +64,7 @@ def render_track_file(
     fps: int | None,
     show: Show,
     textured: bool = True,
+    csv: Path | None = None,
 ) -> tuple[str, TrackReport]:
     """Render a tracker's file to `output`; return one line about it, and what became of its rows.
 
@@ -73,6 +76,7 @@ def render_track_file(
         fps: Frames a second of the GLB file.
         show: Told what is being done, and the share of the work done.
         textured: Whether the file embeds the maps of skin and eyes.
+        csv: File for its ground truth, if wanted.
 
     Raises:
         ClipRefused: If the file cannot be read, played or written.
@@ -85,17 +89,19 @@ def render_track_file(
     except EngineError as error:
         raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
     track = track.on(chosen)
-    line = write_clip(
-        chosen,
-        track_timeline(track),
-        source,
-        output,
+    order = Order(
+        root=rig or DEFAULT_RIG,
+        steps=(),
+        timeline=track_timeline(track),
         fps=fps or DEFAULT_FPS,
         model=Model.for_rig(chosen),
-        show=show,
-        textured=textured,
+        start=0.0,
+        level=DEFAULT_LEVEL,
+        textures=maps_of(chosen, show) if textured else {},
+        glb=output,
+        csv=csv,
     )
-    return line, track.report
+    return written(order, source, show), track.report
 
 
 def _read(source: Path, options: TrackOptions) -> Track:

@@ -13,6 +13,7 @@ from . import (
     maps,
     people,
     rigs,
+    schemas,
     sessions,
     system,
     textures,
@@ -34,6 +35,7 @@ for module in (
     facs,
     insight,
     clips,
+    schemas,
 ):
     router.include_router(module.router)
 

@@ -51,6 +51,25 @@ def test_a_timeline_is_rendered(timeline: Path, tmp_path: Path) -> None:
     assert output.read_bytes()[:4] == b"glTF"
 
 
+def test_ground_truth_is_written_beside_a_clip(track: Path, tmp_path: Path) -> None:
+    before = track.read_text()
+    output = tmp_path / "laugh.glb"
+    result = run("clip", track, "-o", output, "--no-textures", "--fps", 10, "--csv")
+    assert result.exit_code == 0, result.output
+    assert track.read_text() == before
+    header, *rows = (tmp_path / "laugh.truth.csv").read_text().splitlines()
+    assert len(rows) == 2
+    assert {"time", "AU12", "zygomatic_major.L", "jaw_pitch", "x_67"} <= set(header.split(","))
+
+
+def test_a_timeline_s_level_of_detail_counts(timeline: Path, tmp_path: Path) -> None:
+    low, high = tmp_path / "low.glb", tmp_path / "high.glb"
+    assert run("clip", timeline, "-o", high, "--no-textures").exit_code == 0
+    timeline.write_text(json.dumps({**TIMELINE, "level": "low"}))
+    assert run("clip", timeline, "-o", low, "--no-textures").exit_code == 0
+    assert low.stat().st_size < high.stat().st_size
+
+
 def test_a_clip_embeds_the_maps_or_leaves_them_out(timeline: Path, tmp_path: Path) -> None:
     full, bare = tmp_path / "full.glb", tmp_path / "bare.glb"
     assert run("clip", timeline, "-o", full, "--fps", 2).exit_code == 0
