@@ -49,6 +49,7 @@ from .gltf import (
     arkit_to_glb,
     clip_to_glb,
     face_to_glb,
+    performance_of,
     rig_to_glb,
     surface_to_glb,
     targets_to_glb,
@@ -63,6 +64,7 @@ from .kept import keep, read_kept
 from .landmarks import LANDMARKS_68, landmarks_68
 from .measure import LANDMARKS, measure_units
 from .muscle import AirPressure
+from .performance import Performance
 from .quality import judge
 from .rig import (
     BUILTIN_RIGS,
@@ -98,6 +100,7 @@ from .trackers import (
     read_track,
     track_timeline,
 )
+from .version import version
 from .visemes import viseme_blend, viseme_shapes, viseme_table
 from .vocabulary import (
     Lexicon,
@@ -163,6 +166,7 @@ __all__ = [
     "Keyframe",
     "Lexicon",
     "Model",
+    "Performance",
     "Person",
     "Pose",
     "Recipe",
@@ -216,6 +220,7 @@ __all__ = [
     "part_name",
     "path_dependence",
     "people",
+    "performance_of",
     "plain_changes",
     "print_facs",
     "question_of",
@@ -249,6 +254,7 @@ __all__ = [
     "unit_basis",
     "unit_key",
     "usual_layer",
+    "version",
     "viseme_blend",
     "viseme_shapes",
     "viseme_table",

@@ -29,6 +29,9 @@ class Clip:
         displacements: Of the tissue surface from rest [mm], shape (f, s, 3).
         poses: Jaw, gaze and head of each frame, length f.
         activations: Of each muscle, shape (f, m).
+        timeline: What was played; None of frames that were put together.
+        model: The forms of the physics that it was played with.
+        start: Seconds of the timeline that are left out.
     """
 
     rig: Rig
@@ -36,6 +39,9 @@ class Clip:
     displacements: Float32Array
     poses: tuple[Pose, ...]
     activations: Float32Array
+    timeline: Timeline | None = None
+    model: Model | None = None
+    start: float = 0.0
 
     def __len__(self) -> int:
         return len(self.poses)
@@ -53,6 +59,7 @@ class Clip:
             displacements=self.displacements[first:],
             poses=self.poses[first:],
             activations=self.activations[first:],
+            start=self.start + first / self.fps,
         )
 
 
@@ -95,7 +102,8 @@ def record(
         frames.append(player.advance(nearest_tick(index, fps)))
         if progress is not None:
             progress((index + 1) / count)
-    return clip_of(rig, fps, frames)
+    played = clip_of(rig, fps, frames)
+    return replace(played, timeline=timeline, model=player.model)
 
 
 def clip_of(rig: Rig, fps: int, frames: Sequence[Frame]) -> Clip:
@@ -120,6 +128,7 @@ class _Player:
     def __init__(self, rig: Rig, timeline: Timeline, model: Model | None) -> None:
         self._coming = list(timeline.keyframes)
         self._simulator = Simulator(rig, model=model)
+        self.model = self._simulator.model
         self._simulator.add(FACE)
         self._tick = 0
 

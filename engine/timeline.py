@@ -148,7 +148,8 @@ class Timeline:
     def to_json(self) -> dict[str, object]:
         """Return the timeline as `from_json` reads it."""
         return {
-            "timeline": [keyframe.to_json() for keyframe in self.keyframes],
+            # With its layer, for one that is left out depends on what else is said.
+            "timeline": [{**each.to_json(), "layer": each.layer} for each in self.keyframes],
             "duration": self.duration,
         }
 

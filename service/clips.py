@@ -20,7 +20,7 @@ from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .explaining import explain
-from .idle import with_life
+from .idle import seed_of, with_life
 from .render_process import Order
 from .renderer import Renderer
 from .rigs import Rigs
@@ -247,6 +247,7 @@ class Clips:
             textures=textures,
             glb=self._path(clip, "glb"),
             csv=self._path(clip, "csv"),
+            seed=seed_of(request),
         )
         figures = await self._renderer.render(order, job.show)
         seconds = figures["simulation_seconds"] + figures["writing_seconds"]

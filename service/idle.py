@@ -33,6 +33,12 @@ def lived(idle: Idle, rig: Rig) -> Iterator[Keyframe]:
     return idle_keyframes(idle, rig.action_units)
 
 
+def seed_of(clip: NewClip) -> int | None:
+    """Return the seed of a clip's idle life, if it has any."""
+    idle = idle_of(clip.idle, seed=_SEED_OF_CLIPS)
+    return None if idle is None else idle.seed
+
+
 def with_life(timeline: Timeline, clip: NewClip, rig: Rig) -> Timeline:
     """Return the timeline of a clip with the idle life that it asks for beside what it tells."""
     idle = idle_of(clip.idle, seed=_SEED_OF_CLIPS)

@@ -46,6 +46,7 @@ class Order:
         textures: Maps of skin and eyes that the file embeds, by file name; none for colours.
         glb: File to write.
         csv: File for its ground truth, if wanted.
+        seed: Of the idle life in the timeline, which the file tells.
     """
 
     root: str
@@ -58,6 +59,7 @@ class Order:
     textures: Mapping[str, bytes]
     glb: Path
     csv: Path | None
+    seed: int | None = None
 
 
 def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
@@ -85,6 +87,8 @@ def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
     data = clip_to_glb(
         drawn,
         textures=order.textures,
+        origin={"root": order.root, "steps": list(order.steps)},
+        seed=order.seed,
         progress=lambda share: show(SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share),
     )
     _write(order.glb, data)

@@ -14,7 +14,7 @@ from .bodies import NewClip
 from .commands import clip_timeline, model_of
 from .errors import Refused
 from .explaining import explain
-from .idle import with_life
+from .idle import seed_of, with_life
 from .render_process import SIMULATION_SHARE, Order, carry_out
 
 Show = Callable[[str, float], None]
@@ -70,6 +70,7 @@ def render_file(
         textures=maps_of(chosen, show) if textured and clip.textures else {},
         glb=output,
         csv=csv,
+        seed=seed_of(clip),
     )
     return "\n".join([written(order, source, show), *warnings])
 

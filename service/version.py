@@ -1,13 +1,5 @@
 """The version that is installed."""
 
-from __future__ import annotations
+from engine import version
 
-from importlib import metadata
-
-
-def version() -> str:
-    """Return the installed version, or "0" in a tree that was not installed."""
-    try:
-        return metadata.version("risorius")
-    except metadata.PackageNotFoundError:
-        return "0"
+__all__ = ["version"]

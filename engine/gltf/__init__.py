@@ -2,6 +2,7 @@
 
 from .clip import clip_to_glb
 from .face import face_to_glb
+from .played import performance_of
 from .rig import arkit_to_glb, rig_to_glb, targets_to_glb
 from .surface import surface_to_glb
 
@@ -9,6 +10,7 @@ __all__ = [
     "arkit_to_glb",
     "clip_to_glb",
     "face_to_glb",
+    "performance_of",
     "rig_to_glb",
     "surface_to_glb",
     "targets_to_glb",

@@ -87,6 +87,17 @@ class GlbBuilder:
         self._materials: dict[tuple[str, bool], int] = {}
         self._textures = dict(textures or {})
 
+    def tell(self, extras: Extras) -> None:
+        """Have the file say more of itself.
+
+        The library leaves out what is empty or None, but not what is in tuples.
+        """
+        self._gltf.asset.extras.update(extras)
+
+    def view(self, data: Array) -> int:
+        """Store bytes that are no vertices; return their buffer view."""
+        return self._view(data, None)
+
     # Accessors
 
     def accessor(self, array: Array, *, target: int | None = None, bounds: bool = False) -> int:

@@ -11,11 +11,13 @@ import numpy as np
 from ..arrays import Float32Array, FloatArray, IntArray
 from ..clip import Clip
 from ..errors import Cancelled
+from ..performance import Origin, Performance
 from ..settling import Progress
 from .basis import SHARE_DROPPED, MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder, Textures, metres
 from .drawn import DrawnFace
 from .error import FRAMES_AT_ONCE, Check, Motion
+from .played import add_performance
 from .pose import RigidMotion, motions
 from .scene import Pivot, add_pivots, add_rigid_parts, file_extras
 from .skin import add_skin, turn_of
@@ -37,6 +39,8 @@ def clip_to_glb(
     *,
     tolerance: float = 0.05,
     textures: Textures | None = None,
+    origin: Origin | None = None,
+    seed: int | None = None,
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> bytes:
@@ -51,6 +55,9 @@ def clip_to_glb(
         tolerance: Largest error of any vertex [mm].
         textures: The rig's maps (`textures_of`), to be embedded; without them vertices have
             colours.
+        origin: Where the rig comes from, for the extras: with the timeline that `record` played
+            they say what it takes to play the clip again (`performance_of`).
+        seed: Of the idle life in the timeline.
         progress: Told the share of the work done, 0 to 1.
         cancelled: Asked again and again whether to stop.
 
@@ -84,6 +91,10 @@ def clip_to_glb(
     out = np.array([out_weight(pose) for pose in clip.poses])
     if out.any() and TONGUE in parts:
         channels.append(Channel(parts[TONGUE], "weights", out))
+    asked = {"tolerance": tolerance, "textures": bool(textures)}
+    performance = Performance.of(clip, origin=origin, seed=seed, file=asked)
+    if performance is not None:
+        add_performance(builder, performance)
     builder.animation(ANIMATION_NAME, np.arange(len(clip.displacements)) / clip.fps, channels)
     data = builder.to_bytes()
     progress(1.0)

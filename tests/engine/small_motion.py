@@ -40,4 +40,11 @@ def small_clip(frames: int = 40) -> Any:
         )
         for t in time
     )
-    return SimpleNamespace(rig=rig, fps=30, displacements=displacements.astype("f4"), poses=poses)
+    return SimpleNamespace(
+        rig=rig,
+        fps=30,
+        displacements=displacements.astype("f4"),
+        poses=poses,
+        timeline=None,
+        model=None,
+    )
