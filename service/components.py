@@ -21,6 +21,7 @@ from .bodies import ModelChoice
 from .clips import Clips
 from .commands import live_model
 from .embedded import EmbeddedRunner
+from .expressions import Expressions
 from .guard import RateLimit
 from .insight import Insight
 from .kernels import compile_sweep
@@ -62,6 +63,7 @@ class Components:
     runner: EmbeddedRunner
     sessions: Sessions
     clips: Clips
+    expressions: Expressions
     insight: Insight
     loop_delay: LoopDelay
     ready: asyncio.Event = field(default_factory=asyncio.Event)
@@ -112,6 +114,13 @@ class Components:
             max_keyframes=settings.max_keyframes,
             on_end=lambda status: metrics.clips.labels(status).inc(),
         )
+        expressions = Expressions(
+            rigs,
+            cache_dir=settings.cache_dir,
+            cache_bytes=settings.max_cache_bytes,
+            viewer_dir=settings.viewer_dir,
+            queue_limit=settings.max_queued_expressions,
+        )
         insight = Insight(queue_limit=settings.max_queued_analyses)
         return cls(
             settings,
@@ -124,6 +133,7 @@ class Components:
             runner,
             sessions,
             clips,
+            expressions,
             insight,
             LoopDelay(),
         )
@@ -151,6 +161,7 @@ class Components:
                 task.cancel()
                 await asyncio.gather(task, return_exceptions=True)
         await self.clips.stop()
+        await self.expressions.stop()
         await self.sessions.stop()
         await self.loop_delay.stop()
         await asyncio.to_thread(self.runner.stop)

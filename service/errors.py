@@ -7,6 +7,7 @@ Refused
 ├── Unprocessable  422  a body or a name that cannot be used
 ├── AtCapacity     429  the machine moves as many faces as it can; comes with Retry-After
 ├── QuotaExceeded  429  a key has taken what it may; comes with Retry-After
+├── NoPictures     501  there is no viewer or no Chromium here to draw with
 └── Busy           503  a limit is reached; comes with Retry-After
 """
 
@@ -95,6 +96,12 @@ class QuotaExceeded(Refused):
     def __init__(self, message: str, *, retry_after: float) -> None:
         super().__init__("quota_exceeded", message)
         self.headers = {"Retry-After": str(max(1, math.ceil(retry_after)))}
+
+
+class NoPictures(Refused):
+    """There is no viewer or no Chromium here to draw pictures with."""
+
+    status = 501
 
 
 class Busy(Refused):

@@ -106,7 +106,9 @@ class Settings(BaseSettings):
     max_viewers: int = Field(default=64, ge=1, description="Most sockets open on one session.")
     max_rigs: int = Field(default=1000, ge=1, description="Most derived rigs kept.")
     max_cache_bytes: int = Field(
-        default=1_000_000_000, ge=0, description="Most bytes of GLB files kept in the cache folder."
+        default=1_000_000_000,
+        ge=0,
+        description="Most bytes of GLB files kept in the cache folder, and of pictures.",
     )
     max_clips: int = Field(default=1000, ge=1, description="Most clips kept, whatever their state.")
     max_queued_clips: int = Field(
@@ -120,6 +122,9 @@ class Settings(BaseSettings):
     )
     max_queued_analyses: int = Field(
         default=16, ge=1, description="Most analyses and inverses waiting or being computed."
+    )
+    max_queued_expressions: int = Field(
+        default=16, ge=1, description="Most expressions waiting or being made without a session."
     )
     session_idle_seconds: float = Field(
         default=21_600.0,

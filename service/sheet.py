@@ -19,24 +19,16 @@ from .browser import NoBrowser, chromium
 from .server import running
 from .settings import Settings
 from .sheet_edits import Edit
+from .stage import ABOVE, CLOSE_UPS, NOT_BUILT, ROOM, TIMEOUT_MS, VIEWS, CallRefused, call
 
 if TYPE_CHECKING:
     from playwright.sync_api import FloatRect, Page
 
 Show = Callable[[str, float], None]
-CLOSE_UPS = ("eye", "mouth", "ear")
-VIEWS = ("front", "three-quarter", "profile", "left", *CLOSE_UPS)
 PICTURES = (".png", ".jpg", ".jpeg", ".webp")
-_TIMEOUT_MS = 240_000
-"""A first picture waits until the person's maps are baked."""
-_NO_CONTENT = 204
 _LABEL_SHARE = 0.09
 _NO_LIMIT = 1000.0
 """Share of a tick that faces may take: nobody watches these live."""
-_ROOM = 1.34
-"""Side of the page against a picture's: the page frames the whole head, a picture its face."""
-_ABOVE = 0.12
-"""Share of the page above a picture: the hair."""
 _BACKGROUND = (24, 25, 28)
 _INK = (226, 226, 222)
 _QUALITY = 88
@@ -109,18 +101,20 @@ def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
     if not output.resolve().parent.is_dir():
         raise SheetRefused(f"The folder {output.parent} does not exist; make it first.")
     if not (Settings().viewer_dir / "index.html").is_file():
-        raise SheetRefused("The viewer is not built: run `npm ci && npm run build` in static/.")
+        raise SheetRefused(NOT_BUILT)
     with tempfile.TemporaryDirectory(prefix="risorius-sheet-") as folder:
         settings = Settings(
             data_dir=Path(folder), host="127.0.0.1", api_keys=(), capacity_share=_NO_LIMIT
         )
         try:
             with running(create_app(settings), settings) as url, chromium() as browser:
-                side = plan.size if plan.whole else round(plan.size * _ROOM)
+                side = plan.size if plan.whole else round(plan.size * ROOM)
                 page = browser.new_page(viewport={"width": side, "height": side})
                 pictures = list(_photograph(page, url, plan, show))
         except NoBrowser as error:
             raise SheetRefused(str(error)) from error
+        except CallRefused as error:
+            raise SheetRefused(f"This cannot be drawn: {error}.") from error
     if output.is_dir():
         for label, png in pictures:
             picture = Image.open(io.BytesIO(png)).convert("RGB").resize((plan.size, plan.size))
@@ -209,18 +203,18 @@ def _labelled(name: str) -> Pose | None:
 
 def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[str, bytes]]:
     """Put each pose on each face, and take its pictures once it has settled."""
-    page.set_default_timeout(_TIMEOUT_MS)
+    page.set_default_timeout(TIMEOUT_MS)
     rigs = plan.rigs or _people(page, url)
     faces = [(rig, edit) for rig in rigs for edit in (None, *plan.edits)]
     for number, (rig, edit) in enumerate(faces):
         name = name_of(rig, edit, several=len(rigs) > 1)
         show(f"building {name}", number / len(faces))
         if edit is None:
-            shown = _call(page, "GET", f"{url}/api/rigs/{rig}")
+            shown = call(page, "GET", f"{url}/api/rigs/{rig}")
         else:
-            shown = _call(page, "POST", f"{url}/api/rigs", {**edit.changes, "base": rig})
+            shown = call(page, "POST", f"{url}/api/rigs", {**edit.changes, "base": rig})
         poses = poses_of(shown, plan.only)
-        session = _call(page, "POST", f"{url}/api/sessions", {"rig": shown["id"]})["id"]
+        session = call(page, "POST", f"{url}/api/sessions", {"rig": shown["id"]})["id"]
         page.goto(f"{url}/?session={session}&bare=1&still=1&dpr=1")
         page.wait_for_function(_SETTLED, arg=-1)
         for index, pose in enumerate(poses):
@@ -236,7 +230,7 @@ def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[
                 whole = plan.whole or view in CLOSE_UPS
                 label = (", " if plan.edits else " ").join(named)
                 yield label, page.screenshot(clip=_frame_of(_side(page), whole))
-        _call(page, "DELETE", f"{url}/api/sessions/{session}")
+        call(page, "DELETE", f"{url}/api/sessions/{session}")
 
 
 def name_of(rig: str, edit: Edit | None, *, several: bool) -> str:
@@ -254,20 +248,20 @@ def _frame_of(side: float, whole: bool) -> FloatRect:
     """Return the part of a square page that is the picture: all, or from hairline to chin."""
     if whole:
         return {"x": 0.0, "y": 0.0, "width": side, "height": side}
-    shown = side / _ROOM
-    return {"x": (side - shown) / 2.0, "y": _ABOVE * side, "width": shown, "height": shown}
+    shown = side / ROOM
+    return {"x": (side - shown) / 2.0, "y": ABOVE * side, "width": shown, "height": shown}
 
 
 def _people(page: Page, url: str) -> list[str]:
-    listed = _call(page, "GET", f"{url}/api/people")
+    listed = call(page, "GET", f"{url}/api/people")
     return [person["name"] for person in listed["people"]]
 
 
 def _command(page: Page, session: str, pose: Pose) -> int:
     """Ask the pose of the face, and return the tick of the command."""
     held = {"fade": 0.15}
-    emptied = _call(page, "PUT", f"{session}/controls", {**held, "layer": "emotion"})
-    answer = _call(page, "PUT", f"{session}/controls", {**held, **pose.controls})
+    emptied = call(page, "PUT", f"{session}/controls", {**held, "layer": "emotion"})
+    answer = call(page, "PUT", f"{session}/controls", {**held, **pose.controls})
     if pose.emotion is not None:
         body = {
             "label": pose.emotion,
@@ -275,13 +269,5 @@ def _command(page: Page, session: str, pose: Pose) -> int:
             "intensity": pose.intensity,
             "seed": 0,
         }
-        answer = _call(page, "POST", f"{session}/emotions", body)
+        answer = call(page, "POST", f"{session}/emotions", body)
     return int(max(emptied["tick"], answer["tick"]))
-
-
-def _call(page: Page, method: str, url: str, body: dict[str, Any] | None = None) -> Any:
-    answer = page.request.fetch(url, method=method, data=body, timeout=_TIMEOUT_MS)
-    content: Any = answer.json() if answer.status != _NO_CONTENT else None
-    if not answer.ok:
-        raise SheetRefused(f"This cannot be drawn: {content['message']}.")
-    return content

@@ -7,6 +7,7 @@ from fastapi import APIRouter
 from . import (
     clips,
     emotions,
+    expressions,
     facs,
     idle,
     insight,
@@ -26,6 +27,7 @@ for module in (
     system,
     people,
     rigs,
+    expressions,
     textures,
     maps,
     emotions,

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from engine import EngineError, Keyframe, Rig, face_to_glb, parse_facs, print_facs, settled
-
-from ..bodies import NewRig, Scale
+from ..bodies import NewRig
 from ..components import Parts
-from ..errors import refused_by_engine
-from ..rigs import FULL, UNITS, export_tag, tag_of, targets_tag
+from ..rigs import FULL, UNITS, tag_of, targets_tag
 from .answers import TAGGED, GlbResponse, LevelOfDetail, Textured, client_has, tagged_glb
 
 router = APIRouter(prefix="/api/rigs", tags=["rigs"])
@@ -70,34 +66,3 @@ async def surface_glb(
     tag = tag_of(found, level)
     data = b"" if client_has(request, tag) else await parts.rigs.surface(found, level)
     return tagged_glb(request, data, tag)
-
-
-@router.get("/{rig}/expressions/{facs}.glb", responses=TAGGED, response_class=GlbResponse)
-async def expression_glb(
-    rig: str,
-    facs: str,
-    parts: Parts,
-    request: Request,
-    scale: Annotated[Scale, Query(description="How its letters are read.")] = "linear",
-    level: LevelOfDetail = FULL,
-    textured: Textured = True,
-) -> Response:
-    """Return an expression such as `1C+2C+L12D`, settled and baked."""
-    found = await parts.rigs.get(rig)
-    try:
-        terms = parse_facs(facs, scale)
-        keyframe = Keyframe(action_units={term.key: term.intensity for term in terms}, fade=0.15)
-        found.check(keyframe)
-    except EngineError as error:
-        raise refused_by_engine(error) from error
-    tag = f"{export_tag(found, level, textured=textured)}-{print_facs(terms)}"
-    if client_has(request, tag):
-        return tagged_glb(request, b"", tag)
-    data = await parts.rigs.export(
-        found, tag, lambda maps: _expression(found, keyframe, level, maps), textured=textured
-    )
-    return tagged_glb(request, data, tag)
-
-
-def _expression(rig: Rig, keyframe: Keyframe, level: str, maps: Mapping[str, bytes]) -> bytes:
-    return face_to_glb(rig.at_level(level), settled(rig, [keyframe])[0], textures=maps)

@@ -1,6 +1,7 @@
 // window.__viewer: what browser tests, contact sheets and curious visitors may read and do.
 
 import type { Triple } from './face';
+import type { Ground } from './lights';
 
 export interface ViewerHandle {
   /** Face, panels' data and a first frame are there. */
@@ -21,6 +22,8 @@ export interface ViewerHandle {
   drawnVertex(index: number): Triple;
   /** Stand at a view: a name of views.ts, or degrees aside. */
   setView(view: string | number): void;
+  /** What stands behind the face: dark, as on the page, or light. */
+  setGround(ground: Ground): void;
   /** Resolves after the next drawn frame. */
   render(): Promise<void>;
 }

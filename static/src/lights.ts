@@ -87,14 +87,30 @@ function softBox(
   return box;
 }
 
+/** What may stand behind the face: on a page of its own the dark one, in documents also the light one. */
+export const GROUNDS = {
+  dark: { centre: '#4a4d50', edge: '#17191c' },
+  light: { centre: '#ffffff', edge: '#dcd9d4' },
+} as const;
+export type Ground = keyof typeof GROUNDS;
+export type Backdrop = Mesh<PlaneGeometry, ShaderMaterial>;
+
+/** Put another ground behind the face. */
+export function setGround(backdrop: Backdrop, ground: Ground): void {
+  const { uniforms } = backdrop.material;
+  for (const end of ['centre', 'edge'] as const) {
+    (uniforms[end]!.value as Color).set(GROUNDS[ground][end]);
+  }
+}
+
 /** A quiet backdrop, lighter behind the head; dithered, since dark gradients band in 8 bits. */
-export function createBackdrop(): Mesh {
+export function createBackdrop(): Backdrop {
   const material = new ShaderMaterial({
     depthTest: false,
     depthWrite: false,
     uniforms: {
-      centre: { value: new Color('#4a4d50') },
-      edge: { value: new Color('#17191c') },
+      centre: { value: new Color(GROUNDS.dark.centre) },
+      edge: { value: new Color(GROUNDS.dark.edge) },
     },
     vertexShader: /* glsl */ `
       varying vec2 vScreen;

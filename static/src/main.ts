@@ -428,6 +428,9 @@ window.__viewer = {
   setView: (view) => {
     scene.setView(view);
   },
+  setGround: (ground) => {
+    scene.setGround(ground);
+  },
   render: () => scene.rendered(),
 };
 

@@ -9,7 +9,8 @@ import {
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { createBackdrop, createEnvironment, createLights } from './lights';
+import type { Ground } from './lights';
+import { createBackdrop, createEnvironment, createLights, setGround } from './lights';
 import { exposeSkin } from './tone';
 import type { PlaceOfLandmark, Shot } from './views';
 import { shotOf } from './views';
@@ -51,6 +52,7 @@ export interface SceneOptions {
 export class Scene {
   framesDrawn = 0;
   private readonly renderer: WebGLRenderer;
+  private readonly backdrop = createBackdrop();
   private readonly scene = new ThreeScene();
   private readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.05, 5);
   private readonly controls: OrbitControls | null;
@@ -86,7 +88,7 @@ export class Scene {
     this.renderer.setPixelRatio(
       options.pixelRatio ?? Math.min(Math.max(window.devicePixelRatio, LEAST_PIXEL_RATIO), 2),
     );
-    this.scene.add(createBackdrop(), this.lights);
+    this.scene.add(this.backdrop, this.lights);
     this.scene.environment = createEnvironment(this.renderer);
     this.scene.environmentIntensity = 0.24;
     this.controls = options.orbit ? this.createControls() : null;
@@ -116,6 +118,11 @@ export class Scene {
    * Stand at a view: a name of views.ts, or degrees aside.
    * @throws Error when there is none of that name.
    */
+  setGround(ground: Ground): void {
+    setGround(this.backdrop, ground);
+    this.invalidate();
+  }
+
   setView(view: string | number): void {
     this.shot = shotOf(String(view), this.options.placeOf);
     this.view = String(view);
