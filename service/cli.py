@@ -18,7 +18,7 @@ import structlog
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TextColumn
 
 from . import key_commands
 from .terminal import console as _console
@@ -138,10 +138,17 @@ def _show_schema(wanted: bool) -> None:
 
 @app.command()
 def clip(
-    source: Annotated[
-        Path, typer.Argument(metavar="IN", help="Timeline, a JSON file, or a tracker's CSV.")
+    given: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="IN…",
+            help="Timeline, a JSON file; a tracker's CSV; a clip's own GLB, rendered again; "
+            "several, folders of them, or patterns.",
+        ),
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="GLB file to write.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="GLB file to write, or a folder for several.")
+    ],
     rig: Annotated[str | None, typer.Option(help="Rig to play it on.")] = None,
     fps: Annotated[
         int | None,
@@ -158,6 +165,13 @@ def clip(
             "--csv", help="Write its ground truth beside it, OUT.truth.csv: units, muscles, points."
         ),
     ] = False,
+    png: Annotated[
+        bool,
+        typer.Option("--png", help="Draw twelve of its frames beside it, OUT.png, in Chromium."),
+    ] = False,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, max=256, help="Of several files, how many at a time.")
+    ] = None,
     url: Annotated[
         str, typer.Option(help="Service that renders it, http://name:port; without it, here.")
     ] = "",
@@ -190,55 +204,29 @@ def clip(
         ),
     ] = False,
 ) -> None:
-    """Render a timeline or a tracker's file to an animated GLB file, here or by a service."""
+    """Render timelines and trackers' files to animated GLB files, here or by a service."""
     from engine import EngineError, TrackOptions
 
-    from .rendering import ClipRefused, render_by_service, render_file, truth_of
-    from .track_rendering import is_track, neutral_of, render_track_file, report_tables
+    from .clip_commands import render
+    from .clip_files import Wanted
+    from .rendering import ClipRefused
+    from .track_rendering import neutral_of
 
-    progress = Progress(
-        TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn(), console=_console
-    )
-    told = None
     try:
-        with progress:
-            task = progress.add_task("reading", total=1.0)
-
-            def show(stage: str, share: float) -> None:
-                progress.update(task, description=stage, completed=share)
-
-            asked: dict[str, Any] = {"rig": rig, "fps": fps, "textured": textures, "show": show}
-            truth = truth_of(output) if csv else None
-            if url and csv:
-                raise ClipRefused("Ground truth is written here: leave --url out.")
-            if is_track(source):
-                if url:
-                    raise ClipRefused("A tracker's file is rendered here: leave --url out.")
-                options = TrackOptions(
-                    fps=fps,
-                    gain=gain,
-                    face=face,
-                    neutral=neutral_of(neutral),
-                    smooth=smooth,
-                    head=head,
-                    gaze=gaze,
-                    max_seconds=seconds,
-                )
-                report, told = render_track_file(
-                    source, output, options=options, csv=truth, **asked
-                )
-            elif url:
-                report = render_by_service(source, output, url=url, key=key, **asked)
-            else:
-                report = render_file(source, output, csv=truth, **asked)
+        options = TrackOptions(
+            fps=fps,
+            gain=gain,
+            face=face,
+            neutral=neutral_of(neutral),
+            smooth=smooth,
+            head=head,
+            gaze=gaze,
+            max_seconds=seconds,
+        )
+        wanted = Wanted(rig, fps, textures, csv, png, url, key, options)
+        render(given, output, wanted, jobs=jobs, as_json=as_json)
     except (ClipRefused, EngineError) as refused:
         _refuse(str(refused))
-    if told is not None and as_json:
-        typer.echo(json.dumps(told.to_json(), indent=2))
-    elif told is not None:
-        for table in report_tables(told):
-            _console.print(table)
-    _console.print(escape(report), soft_wrap=True)
 
 
 @app.command()

@@ -1,0 +1,237 @@
+"""Files made clips: one, or many side by side in processes, for the command line."""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TypeVar
+
+from engine import EngineError, TrackOptions, TrackReport
+
+from .clip_sheet import draw_clip
+from .playing_again import is_clip, render_again
+from .rendering import ClipRefused, Show, render_by_service, render_file, truth_of
+from .track_rendering import SUFFIXES, is_track, render_track_file
+
+_TIMELINE = ".json"
+_TRUTH = ".truth.csv"
+_PATTERN = "*?["
+Given = TypeVar("Given")
+Got = TypeVar("Got")
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """How files are made clips: what is the same for each of them.
+
+    Attributes:
+        rig: Overrides that of a timeline; a tracker's file plays on the standard rig without it.
+        fps: Overrides a timeline's frame rate.
+        textured: Whether files embed the maps of skin and eyes.
+        csv: Whether ground truth is written beside each.
+        png: Whether a contact sheet is drawn beside each.
+        url, key: A service that renders them; empty renders here.
+        options: How trackers' files are read.
+    """
+
+    rig: str | None = None
+    fps: int | None = None
+    textured: bool = True
+    csv: bool = False
+    png: bool = False
+    url: str = ""
+    key: str = ""
+    options: TrackOptions = field(default_factory=TrackOptions)
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """What became of a file: a line about it, and of a tracker's, what became of its rows."""
+
+    line: str
+    report: TrackReport | None = None
+
+
+def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Rendered:
+    """Render a timeline, a tracker's file or a clip to a GLB file.
+
+    Args:
+        source: Told apart by name.
+        output: GLB file to write.
+        wanted: How.
+        show: Told what is being done, and the share of the work done.
+
+    Raises:
+        ClipRefused: If the file cannot be read, played or written.
+    """
+    truth = truth_of(output) if wanted.csv else None
+    if wanted.url:
+        return _by_service(source, output, wanted, show)
+    report: TrackReport | None = None
+    if is_clip(source):
+        if wanted.rig is not None or wanted.fps is not None:
+            raise ClipRefused("A clip is rendered again as it is: leave --rig and --fps out.")
+        if source.resolve() == output.resolve():
+            raise ClipRefused(f"{source} would be written over; name another file with -o.")
+        line = render_again(source, output, show=show, csv=truth)
+    elif is_track(source):
+        line, report = render_track_file(
+            source,
+            output,
+            options=wanted.options,
+            rig=wanted.rig,
+            fps=wanted.fps,
+            show=show,
+            textured=wanted.textured,
+            csv=truth,
+        )
+    else:
+        line = render_file(
+            source,
+            output,
+            rig=wanted.rig,
+            fps=wanted.fps,
+            show=show,
+            textured=wanted.textured,
+            csv=truth,
+        )
+    if wanted.png:
+        picture = output.with_suffix(".png")
+        draw_clip(output, picture, show)
+        line += f"\n{picture}: its frames, drawn"
+    return Rendered(line, report)
+
+
+def _by_service(source: Path, output: Path, wanted: Wanted, show: Show) -> Rendered:
+    if is_track(source) or is_clip(source):
+        what = "A tracker's file" if is_track(source) else "A clip"
+        raise ClipRefused(f"{what} is rendered here: leave --url out.")
+    if wanted.csv or wanted.png:
+        raise ClipRefused("Ground truth and pictures are made here: leave --url out.")
+    line = render_by_service(
+        source,
+        output,
+        url=wanted.url,
+        key=wanted.key,
+        rig=wanted.rig,
+        fps=wanted.fps,
+        show=show,
+        textured=wanted.textured,
+    )
+    return Rendered(line)
+
+
+def files_of(given: Sequence[Path]) -> list[Path]:
+    """Return the files that files, folders and patterns name, each once.
+
+    Of a folder these are its timelines and trackers' files, in order of name; ground truth that
+    was written there before is none.
+
+    Raises:
+        ClipRefused: If one names none.
+    """
+    found: dict[Path, None] = {}
+    for path in given:
+        named = _named(path)
+        if not named:
+            kinds = ", ".join((_TIMELINE, *SUFFIXES))
+            raise ClipRefused(f"{path} names no file; expected timelines or tracks: {kinds}.")
+        found.update(dict.fromkeys(named))
+    return list(found)
+
+
+def _named(path: Path) -> list[Path]:
+    if path.is_dir():
+        suffixes = (_TIMELINE, *SUFFIXES)
+        return sorted(
+            file
+            for file in path.iterdir()
+            if file.suffix.lower() in suffixes and not file.name.endswith(_TRUTH)
+        )
+    if not path.exists() and any(sign in str(path) for sign in _PATTERN):
+        return [Path(name) for name in sorted(glob.glob(str(path), recursive=True))]
+    return [path]
+
+
+def outputs_of(sources: Sequence[Path], folder: Path) -> list[Path]:
+    """Return the GLB file of each source in a folder, which is made if it is not there.
+
+    Raises:
+        ClipRefused: If two would be one, or the folder cannot be made.
+    """
+    outputs = [folder / f"{source.stem}.glb" for source in sources]
+    for index, output in enumerate(outputs):
+        first = outputs.index(output)
+        if first != index:
+            raise ClipRefused(
+                f"{sources[first]} and {sources[index]} would both be {output}; rename one."
+            )
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise ClipRefused(f"The folder {folder} cannot be made: {error.strerror}.") from error
+    return outputs
+
+
+def render_many(
+    sources: Sequence[Path], outputs: Sequence[Path], wanted: Wanted, *, jobs: int
+) -> Iterator[tuple[int, Rendered | ClipRefused]]:
+    """Render files side by side, and yield the number of each and what became of it, once done.
+
+    Args:
+        sources: As `render_one` takes them.
+        outputs: A GLB file for each.
+        wanted: How.
+        jobs: How many at a time, each in a process of its own.
+    """
+    work = [(*pair, wanted) for pair in zip(sources, outputs, strict=True)]
+    for number, rendered in side_by_side(_render, work, jobs=jobs):
+        if isinstance(rendered, BrokenProcessPool):
+            message = f"{sources[number]} cannot be rendered: its process ended, for want of memory"
+            yield number, ClipRefused(f"{message} perhaps; try fewer --jobs.")
+        else:
+            yield number, rendered
+
+
+def _render(work: tuple[Path, Path, Wanted]) -> Rendered | ClipRefused:
+    try:
+        return render_one(*work, show=lambda _stage, _share: None)
+    except ClipRefused as refused:
+        return refused
+    except EngineError as error:
+        return ClipRefused(f"{work[0]} cannot be rendered: {error}.")
+
+
+def side_by_side(
+    make: Callable[[Given], Got], work: Iterable[Given], *, jobs: int
+) -> Iterator[tuple[int, Got | BrokenProcessPool]]:
+    """Yield the number of each piece of work and what `make` returns of it, in processes.
+
+    Args:
+        make: A function that can be pickled.
+        work: What it is called with.
+        jobs: How many at a time.
+    """
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        numbers = {pool.submit(make, piece): number for number, piece in enumerate(work)}
+        try:
+            for done in as_completed(numbers):
+                try:
+                    yield numbers[done], done.result()
+                except BrokenProcessPool as broken:
+                    yield numbers[done], broken
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def usual_jobs() -> int:
+    """Return how many files are made at a time: one a core that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
