@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn
 
-from . import key_commands
+from . import dataset_commands, key_commands
 from .terminal import console as _console
 from .terminal import refuse as _refuse
 from .version import version
@@ -227,6 +227,9 @@ def clip(
         render(given, output, wanted, jobs=jobs, as_json=as_json)
     except (ClipRefused, EngineError) as refused:
         _refuse(str(refused))
+
+
+app.command()(dataset_commands.dataset)
 
 
 @app.command()
