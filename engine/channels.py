@@ -41,7 +41,7 @@ class Channels:
 
     muscle_names: tuple[str, ...]
 
-    @property
+    @cached_property
     def count(self) -> int:
         """Length of the vector."""
         return len(self.muscle_names) + sum(len(axes) for axes in GROUPS.values())

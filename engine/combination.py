@@ -54,9 +54,14 @@ class Combination:
 
         The share does not change as the whole expression grows: its look grows, not switches.
         """
-        here = [levels.get(unit, 0.0) for unit in self.units]
-        weakest, strongest = min(here), max(here)
-        return (weakest, weakest / strongest) if weakest > 0.0 else (0.0, 0.0)
+        here = []
+        for unit in self.units:
+            level = levels.get(unit, 0.0)
+            if level <= 0.0:  # Of most rules a unit is missing.
+                return 0.0, 0.0
+            here.append(level)
+        weakest = min(here)
+        return weakest, weakest / max(here)
 
     def yielded(self, levels: Mapping[str, float]) -> dict[str, float]:
         """Return the intensities at which units of `yields` act, so that the greatest is seen."""

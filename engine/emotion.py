@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from .errors import UnknownName
 from .facs import Term, parse_facs
@@ -25,7 +26,7 @@ class Emotion:
     source: str = ""
     synonyms: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def terms(self) -> tuple[Term, ...]:
         """The recipe's units; none for neutral."""
         return parse_facs(self.recipe) if self.recipe.strip() else ()

@@ -40,7 +40,8 @@ class Mixer:
     def at(self, tick: int) -> FloatArray:
         """Return the merged command at `tick`, shape (channels,)."""
         self._expire(tick)
-        if self._merged is None or self._merged_at <= self._settled_at:
+        moving = self._merged_at <= self._settled_at and self._merged_at != tick
+        if self._merged is None or moving:
             self._merged, self._merged_at = merge(self._ramps, self._adds, tick), tick
         return self._merged
 

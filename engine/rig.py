@@ -453,20 +453,36 @@ class Rig:
         for name, intensity in sorted(acting.levels.items()):
             unit, _ = self.resolve_unit(name)
             scale = unit.scale(intensity)
-            for index, share, stem in self._muscles_of[side]:
-                muscle = self.muscle_names[index]
-                weight = unit.muscles.get(muscle, unit.muscles.get(stem, 0.0))
-                if weight:
-                    vector[index] += share * scale * weight * acting.factors.get((name, stem), 1.0)
+            moved = self._moved_by[side].get(name)
+            for index, share, weight, stem in moved or self._weights(unit, side):
+                vector[index] += share * scale * weight * acting.factors.get((name, stem), 1.0)
             for place, value in unit.pose.items():
                 group, axis = place.split(".")
                 # A one-sided unit does it all by itself; else half is each side's.
                 half = 1.0 if unit.one_sided else 0.5
                 sign = -1.0 if unit.one_sided and side == "R" and (group, axis) in MIRRORED else 1.0
                 vector[self.channels.index(group, axis)] += sign * half * scale * value
-        for index, share, stem in self._muscles_of[side]:
+        for index, share, stem in self._muscles_of[side] if acting.adds else ():
             vector[index] += share * acting.adds.get(stem, 0.0)
         return vector
+
+    @cached_property
+    def _moved_by(self) -> dict[str, dict[str, list[tuple[int, float, float, str]]]]:
+        """What each unit does to the muscles of each side; a command asks for it many times."""
+        return {
+            side: {name: self._weights(unit, side) for name, unit in self.action_units.items()}
+            for side in SIDES
+        }
+
+    def _weights(self, unit: ActionUnit, side: str) -> list[tuple[int, float, float, str]]:
+        """Return index, share, weight and name without side of the muscles that a unit moves."""
+        weights = []
+        for index, share, stem in self._muscles_of[side]:
+            muscle = self.muscle_names[index]
+            weight = unit.muscles.get(muscle, unit.muscles.get(stem, 0.0))
+            if weight:
+                weights.append((index, share, weight, stem))
+        return weights
 
     @cached_property
     def _muscles_of(self) -> dict[str, list[tuple[int, float, str]]]:

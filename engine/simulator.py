@@ -35,9 +35,6 @@ FARTHEST_MM = 90.0
 """Displacement that no face reaches: beyond it the simulation has diverged."""
 
 
-_AXES = tuple((group, axis) for group, names in GROUPS.items() for axis in names)
-
-
 @dataclass(frozen=True, eq=False)
 class Snapshot:
     """A face at one moment with all of its tissue, for those who look into it.
@@ -260,16 +257,22 @@ class Simulator:
     def _rests(self, state: FaceState) -> bool:
         """Move eyes and head of a face whose tissue rests, and wake that when it is to move."""
         if state.resting:
-            command = state.mixer.at(state.tick)
-            state.resting = not self._tissue_called(state, command)
+            state.resting = not self._tissue_called(state)
             if state.resting:
+                command = state.mixer.at(state.tick)
                 smoothing, stride = self.assembly.smoothing, self.assembly.stride
                 state.signals = lagged(state.signals, command, smoothing, stride)
         return state.resting
 
-    def _tissue_called(self, state: FaceState, command: FloatArray) -> bool:
+    def _tissue_called(self, state: FaceState) -> bool:
         """Return whether what moves tissue is not where it is asked to be."""
+        command = state.mixer.at(state.tick)
         return bool(((command != state.signals) & self._tight).any())
+
+    def _arrived(self, state: FaceState) -> bool:
+        """Return whether everything is where it is asked to be, and stays."""
+        command, changing = state.mixer.at(state.tick), state.mixer.changing(state.tick)
+        return not changing and bool((command == state.signals).all())
 
     def _ring(self) -> None:
         """Wake the sleepers whose hold is over; a face may have gone or woken since."""
@@ -287,11 +290,10 @@ class Simulator:
         if state.lost:
             self._reset(state)
             return
-        command = state.mixer.at(state.tick)
-        quiet = state.speed < STILL_SPEED and not self._tissue_called(state, command)
-        arrived = not state.mixer.changing(state.tick) and bool((command == state.signals).all())
+        # What takes time is asked last: most faces that are awake move.
+        quiet = state.speed < STILL_SPEED and not self._tissue_called(state)
         state.quiet_ticks = state.quiet_ticks + 1 if quiet else 0
-        state.still_ticks = state.still_ticks + 1 if quiet and arrived else 0
+        state.still_ticks = state.still_ticks + 1 if quiet and self._arrived(state) else 0
         if state.still_ticks >= STILL_TICKS:
             self._sleep(face, state)
         elif state.quiet_ticks >= STILL_TICKS and not state.resting:
@@ -320,16 +322,18 @@ class Simulator:
 
     def _posed(self, signals: FloatArray) -> Pose:
         """Return the rigid parts of a face; vergence turns each eye by half of its angle."""
-        axes = dict(zip(_AXES, signals[self.rig.channels.muscle_count :].tolist(), strict=True))
-        yaw, pitch = axes["gaze", "yaw"], axes["gaze", "pitch"]
-        inwards = axes["gaze", "vergence"] / 2.0
+        # In the order of `GROUPS`.
+        jaw_pitch, jaw_yaw, jaw_thrust, *others = signals[self.rig.channels.muscle_count :].tolist()
+        gaze_yaw, gaze_pitch, vergence, *others = others
+        head_yaw, head_pitch, head_roll, head_thrust, tongue_thrust = others
+        inwards = vergence / 2.0
         return Pose(
-            axes["jaw", "pitch"],
-            axes["jaw", "yaw"],
-            axes["jaw", "thrust"],
-            gaze_left=(yaw - inwards, pitch),
-            gaze_right=(yaw + inwards, pitch),
-            head=(axes["head", "yaw"], axes["head", "pitch"], axes["head", "roll"]),
-            head_thrust=axes["head", "thrust"],
-            tongue_thrust=axes["tongue", "thrust"],
+            jaw_pitch,
+            jaw_yaw,
+            jaw_thrust,
+            gaze_left=(gaze_yaw - inwards, gaze_pitch),
+            gaze_right=(gaze_yaw + inwards, gaze_pitch),
+            head=(head_yaw, head_pitch, head_roll),
+            head_thrust=head_thrust,
+            tongue_thrust=tongue_thrust,
         )

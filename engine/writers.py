@@ -61,6 +61,8 @@ class Writers:
         self.rig = rig
         self._held: dict[str, dict[str, Held]] = {layer: {} for layer in LAYERS}
         self._count = 0
+        # The first tick at which a writer's time is up: asked for several times a tick.
+        self._alarm: int | None = None
 
     def take(self, keyframe: Keyframe, tick: int) -> FloatArray:
         """Take a command at `tick`; return the ticks that each channel takes for it, (channels,).
@@ -87,10 +89,13 @@ class Writers:
         if keyframe.hold is not None:
             ends.append(tick + int(lengths.max()) + ticks(keyframe.hold))
         held.expires = min(ends, default=None)
+        self._alarm = self._first_end()
         return lengths
 
     def expire(self, tick: int) -> Iterator[Expired]:
         """Let go of every writer whose time is up, one after another, the first to end first."""
+        if self._alarm is None or tick < self._alarm:
+            return
         due = sorted(
             (held.expires, layer, owner)
             for layer, owners in self._held.items()
@@ -98,10 +103,15 @@ class Writers:
             if held.expires is not None and tick >= held.expires
         )
         for end, layer, owner in due:
-            yield Expired(layer, end, self._held[layer].pop(owner).fade_out)
+            fade_out = self._held[layer].pop(owner).fade_out
+            self._alarm = self._first_end()
+            yield Expired(layer, end, fade_out)
 
     def alarm(self) -> int | None:
         """Return the tick at which the first writer's time is up, None where all stay."""
+        return self._alarm
+
+    def _first_end(self) -> int | None:
         ends = (held.expires for owners in self._held.values() for held in owners.values())
         return min((end for end in ends if end is not None), default=None)
 
@@ -131,6 +141,7 @@ class Writers:
         """Return the same writers, with the same holds, on `rig`."""
         twin = Writers(rig)
         twin._held, twin._count = copy.deepcopy(self._held), self._count
+        twin._alarm = self._alarm
         return twin
 
     def beneath(self, keyframe: Keyframe) -> dict[str, list[str]]:
@@ -146,7 +157,7 @@ class Writers:
 
     def clear(self) -> None:
         """Let go of everything."""
-        self._held = {layer: {} for layer in LAYERS}
+        self._held, self._alarm = {layer: {} for layer in LAYERS}, None
 
     def keyframes(self, tick: int) -> list[Keyframe]:
         """Return commands that make a face at rest hold what is held at `tick`, in their order."""

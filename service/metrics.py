@@ -130,8 +130,9 @@ class _Durations(Collector):
         recent = GaugeMetricFamily(
             f"{self._name}_recent", f"{self._help} The latest.", labels=("quantile",)
         )
-        for quantile in _QUANTILES:
-            recent.add_metric((quantile,), self._times.quantile(float(quantile)))
+        found = self._times.quantiles(*map(float, _QUANTILES))
+        for quantile, seconds in zip(_QUANTILES, found, strict=True):
+            recent.add_metric((quantile,), seconds)
         return [histogram, recent]
 
 

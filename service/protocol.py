@@ -121,13 +121,16 @@ def _to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
     """Round displacements [mm] to grid steps."""
     if not np.isfinite(displacements).all():
         raise ValueError("a displacement is not finite")
-    steps = np.rint(displacements / _MILLIMETRES_PER_STEP)
-    return np.clip(steps, -_STEP_LIMIT, _STEP_LIMIT).astype(np.int16)
+    steps = displacements / _MILLIMETRES_PER_STEP
+    np.rint(steps, out=steps)
+    np.clip(steps, -_STEP_LIMIT, _STEP_LIMIT, out=steps)
+    return steps.astype(np.int16)
 
 
 def encode_frame(frame: SurfaceFrame) -> bytes:
     """Return the bytes of `frame`, as laid out above."""
-    moved = np.asarray(frame.steps.any(axis=1))
+    moved = (frame.steps[:, 0] | frame.steps[:, 1] | frame.steps[:, 2]) != 0
+    steps = frame.steps.astype("<i2", copy=False)
     thrusts = (frame.head_thrust, frame.tongue_thrust)
     flags = (FLAG_ASLEEP if frame.asleep else 0) | (FLAG_THRUSTS if any(thrusts) else 0)
     header = _HEADER.pack(
@@ -145,7 +148,7 @@ def encode_frame(frame: SurfaceFrame) -> bytes:
     bitmap = np.packbits(moved, bitorder="little").tobytes()
     padding = b"\0" * (len(bitmap) % 2)
     tail = _THRUSTS.pack(*thrusts) if flags & FLAG_THRUSTS else b""
-    return header + bitmap + padding + frame.steps[moved].astype("<i2").tobytes() + tail
+    return header + bitmap + padding + steps.compress(moved, axis=0).tobytes() + tail
 
 
 def decode_frame(data: bytes) -> SurfaceFrame:

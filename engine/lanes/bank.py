@@ -14,7 +14,7 @@ from ..top_speed import ALONG_AN_AXIS, held_back
 from .advance import advance
 from .network import NODE, Network, Order, arrange, order_columns
 from .posing import Lidding, Posing, pose, posing_of, turn_lids
-from .surface import Following, fare, following, surface
+from .surface import Following, fare, following, remember, surface
 from .sweep import Faces
 from .touching import Touching, touching
 from .vector import WIDTH, aligned
@@ -171,7 +171,7 @@ class Bank:
         """Note how the faces fare, and return what is seen of them, as `step` does."""
         plan, faces = self._plan, self.faces
         self._fare()
-        self._before[:] = faces.x
+        remember(faces.x, self._before)
         seen = np.empty((WIDTH, plan.points, 3))
         surface(faces.x, plan.following, self._jaw, self._moved, seen)
         return seen
