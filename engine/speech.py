@@ -3,7 +3,9 @@
 Each viseme begins before its time and fades in while the one before it fades out, so the mouth is
 on its way from one to the next all the time. In quick speech vowels fall short of their targets,
 as living mouths do (Öhman 1966; Cohen and Massaro 1993); lips that close do not, or p, b and m
-would not be seen. How fast jaw and lips follow is the tissue's and the rates' matter.
+would not be seen, and they come at their own time: a vowel between two of them gives way, so that
+quick speech never falls behind its sound. How fast jaw and lips follow is the tissue's and the
+rates' matter.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from dataclasses import dataclass, replace
 
 from .blend import Shape, blend
 from .errors import InvalidTrack
-from .timeline import MAX_SECONDS, TICKS_PER_SECOND, Keyframe
+from .timeline import MAX_SECONDS, TICKS_PER_SECOND, Keyframe, ticks
 from .visemes import find_viseme
 
 SPEAKER = "speech"
@@ -25,11 +27,12 @@ before a vowel (Bell-Berti and Harris 1982); on this face open lips meet 0.16 to
 command."""
 FADE = 0.12
 """Seconds that the command of a viseme takes to come: a syllable's half at four a second."""
-CLOSING_FADE = 0.06
+CLOSING_FADE = 0.04
 """Seconds that the command takes to close lips. Ours."""
 STAYS_CLOSED = 0.06
-"""Seconds for which lips that close are asked to, at least, before the next viseme begins: the
-tissue lags behind its command. Ours, the least with which they meet at eleven visemes a second."""
+"""Seconds for which lips that close are asked to before a vowel begins, unless the next ones close
+before that: the tissue lags behind its command. Ours, the least with which they meet at six to
+sixteen visemes a second, and open between them up to eleven."""
 LAST_SECONDS = 0.2
 """How long the last of the visemes with times lasts, s."""
 LETS_GO = 0.2
@@ -130,14 +133,30 @@ def speech_keyframes(
 
 
 def _starts(cues: Sequence[Cue], shapes: Sequence[Shape], delay: float) -> list[float]:
-    """Return when each viseme begins to come, s: before its time, and each after the last one."""
-    starts: list[float] = []
-    free = 0.0
-    for cue, shape in zip(cues, shapes, strict=True):
-        start = max(cue.time + delay - LEAD, free)
-        starts.append(start)
-        free = start + (CLOSING_FADE + STAYS_CLOSED if shape.closes else _TICK)
-    return starts
+    """Return when each viseme begins to come, s, on ticks: before its time, each after the last.
+
+    Lips that close begin at their own time. What comes after them waits until they have met, but
+    no longer than until those that close next begin.
+    """
+    own = [max(0, ticks(cue.time + delay - LEAD)) for cue in cues]
+    starts: list[int] = []
+    closed_until = 0
+    for time, shape, latest in zip(own, shapes, _latest(own, shapes), strict=True):
+        start = time if shape.closes else max(time, min(closed_until, latest))
+        starts.append(max(start, starts[-1] + 1) if starts else start)
+        if shape.closes:
+            closed_until = starts[-1] + ticks(CLOSING_FADE + STAYS_CLOSED)
+    return [start / TICKS_PER_SECOND for start in starts]
+
+
+def _latest(own: Sequence[int], shapes: Sequence[Shape]) -> list[int]:
+    """Return until when each viseme may wait, ticks: one for each before a closing one."""
+    latest: list[int] = []
+    free = ticks(MAX_SECONDS)
+    for time, shape in zip(reversed(own), reversed(shapes), strict=True):
+        free = time if shape.closes else free - 1
+        latest.append(free)
+    return latest[::-1]
 
 
 def _mouth(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 
 from engine import Keyframe, ticks
@@ -11,10 +12,13 @@ MOST_COMING = 50_000
 
 
 class Schedule:
-    """What waits for the faces of one simulator, by its ticks."""
+    """What waits for the faces of one simulator, by its ticks.
+
+    A tick looks at the first of each face alone: an hour of speech takes no more of it than a word.
+    """
 
     def __init__(self) -> None:
-        self._coming: dict[str, list[tuple[int, Keyframe]]] = {}
+        self._coming: dict[str, deque[tuple[int, Keyframe]]] = {}
 
     @property
     def empty(self) -> bool:
@@ -29,32 +33,33 @@ class Schedule:
         whose = {(keyframe.layer, keyframe.owner) for keyframe in keyframes}
         kept = [
             (tick, keyframe)
-            for tick, keyframe in self._coming.get(face, [])
+            for tick, keyframe in self._coming.get(face, ())
             if (keyframe.layer, keyframe.owner) not in whose
         ]
         self.carry_on(face, [*kept, *((now + ticks(each.time), each) for each in keyframes)], 0)
 
     def coming(self, face: str) -> int:
         """Return how many wait for a face."""
-        return len(self._coming.get(face, []))
+        return len(self._coming.get(face, ()))
 
     def due(self, now: int) -> list[tuple[str, Keyframe]]:
         """Take out what is due at the tick `now`, of each face in order of time."""
         found = []
         for face, waiting in list(self._coming.items()):
-            count = sum(tick <= now for tick, _ in waiting)
-            found += [(face, keyframe) for _, keyframe in waiting[:count]]
-            self.carry_on(face, waiting[count:], 0)
+            while waiting and waiting[0][0] <= now:
+                found.append((face, waiting.popleft()[1]))
+            if not waiting:
+                del self._coming[face]
         return found
 
     def leave(self, face: str, now: int) -> list[tuple[int, Keyframe]]:
         """Take out all that waits for a face, with the ticks that are left from `now`."""
-        return [(tick - now, keyframe) for tick, keyframe in self._coming.pop(face, [])]
+        return [(tick - now, keyframe) for tick, keyframe in self._coming.pop(face, ())]
 
     def carry_on(self, face: str, waiting: Sequence[tuple[int, Keyframe]], now: int) -> None:
         """Have keyframes wait in place of what does, each its ticks from `now` on."""
         if waiting:
             in_order = sorted(waiting, key=lambda each: each[0])
-            self._coming[face] = [(now + tick, keyframe) for tick, keyframe in in_order]
+            self._coming[face] = deque((now + tick, keyframe) for tick, keyframe in in_order)
         else:
             self._coming.pop(face, None)

@@ -149,7 +149,8 @@ async def play(session_id: str, body: EmotionCommand, parts: Parts) -> dict[str,
 async def speak(session_id: str, body: SpeechCommand, parts: Parts) -> dict[str, Any]:
     """Play visemes in time, from now on; what the owner had still to say is dropped."""
     session = await parts.sessions.get(session_id)
-    speech = spoken(body, session.rig)
+    # Thousands of visemes take longer than frames of other faces may wait.
+    speech = await asyncio.to_thread(spoken, body, session.rig)
     tick = await parts.sessions.perform(session, speech.keyframes)
     return {
         "tick": tick,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -129,13 +130,18 @@ def test_the_smile_stays_in_cheeks_and_eyes(faces: dict[str, np.ndarray], name: 
 
 def spoken(feeling: Keyframe | None = None, pace: float = 0.12) -> list[np.ndarray]:
     """Return displacements, tick by tick, of a face that speaks `WORDS`, `pace` s each."""
+    return said(WORDS, pace, feeling)
+
+
+def said(words: Sequence[str], pace: float, feeling: Keyframe | None = None) -> list[np.ndarray]:
+    """Return displacements, tick by tick, of a face that speaks, `pace` s each word."""
     sim = simulator()
     sim.add("face")
     if feeling is not None:
         sim.apply("face", feeling)
         for _ in range(60):
             sim.step()
-    cues, end = cues_of([{"viseme": name, "duration": pace} for name in WORDS])
+    cues, end = cues_of([{"viseme": name, "duration": pace} for name in words])
     coming, frames = speech_keyframes(cues, end), []
     for tick in range(ticks(end) + 50):
         while coming and ticks(coming[0].time) <= tick:
@@ -212,18 +218,61 @@ def test_a_speech_goes_forward_and_ends_silent(spoken: list[tuple[str, float, fl
     keyframes = speech_keyframes(cues, end)
     starts = [keyframe.time for keyframe in keyframes]
     assert all(ticks(b) > ticks(a) for a, b in pairwise(starts))
-    for keyframe, cue, after in zip(keyframes, cues, starts[1:], strict=False):
+    for keyframe in keyframes[:-1]:
         RIG.check(keyframe)
         assert keyframe.layer == "speech"
         assert keyframe.ttl is not None
         assert keyframe.time + keyframe.ttl >= starts[-1]
-        if find_viseme(cue.viseme).closes:
-            last = keyframe is keyframes[-2]
-            assert after - keyframe.time > (0.0 if last else CLOSING_FADE + STAYS_CLOSED - 1e-9)
     last = keyframes[-1]
     assert last.replace
     assert not last.action_units
     assert not last.jaw
+
+
+@given(CUES)
+def test_lips_close_in_time_and_stay_closed_until_they_have_met(
+    spoken: list[tuple[str, float, float]],
+) -> None:
+    cues, end = cues_of([{"viseme": n, "duration": d, "weight": w} for n, d, w in spoken])
+    starts = [ticks(keyframe.time) for keyframe in speech_keyframes(cues, end)[:-1]]
+    own = [ticks(cue.time + LEAD - LEAD) for cue in cues]
+    closing = [find_viseme(cue.viseme).closes for cue in cues]
+    stays = ticks(CLOSING_FADE + STAYS_CLOSED)
+    for place in range(len(cues)):
+        if not closing[place]:
+            continue
+        assert starts[place] == max(own[place], starts[place - 1] + 1 if place else 0)
+        opens = next((at for at in range(place + 1, len(cues)) if not closing[at]), None)
+        if opens == place + 1:
+            next_closing = [own[at] - at for at in range(opens, len(cues)) if closing[at]]
+            hurried = any(time + opens < starts[place] + stays for time in next_closing)
+            assert hurried or starts[opens] >= starts[place] + stays
+
+
+def test_quick_speech_does_not_fall_behind_its_sound() -> None:
+    cues, end = cues_of([{"viseme": n, "duration": 0.05} for n in ("PP", "aa") * 500])
+    keyframes = speech_keyframes(cues, end)
+    assert keyframes[-1].time == pytest.approx(end + LEAD)
+    late = [ticks(k.time) - ticks(c.time) for k, c in zip(keyframes, cues, strict=False)]
+    assert max(late) <= ticks(CLOSING_FADE + STAYS_CLOSED)
+
+
+@pytest.mark.parametrize("vowel", ["aa", "E", "ou"])
+@pytest.mark.parametrize("pace", [0.06, 0.08, 0.1])
+def test_lips_meet_between_any_vowels_however_quick(vowel: str, pace: float) -> None:
+    words = [vowel, *("PP", vowel) * 3]
+    gaps = [gap(frame) for frame in said(words, pace)]
+    for place in range(1, len(words), 2):
+        heard = gaps[ticks(LEAD + place * pace) : ticks(LEAD + (place + 1) * pace) + 1]
+        assert min(heard) < CLOSED_MM
+
+
+def test_the_lower_lip_reaches_the_teeth_in_quick_speech(faces: dict[str, np.ndarray]) -> None:
+    words = ["aa", *("FF", "aa") * 3]
+    teeth = [to_teeth(frame) for frame in said(words, 0.08)]
+    for place in range(1, len(words), 2):
+        heard = teeth[ticks(LEAD + place * 0.08) : ticks(LEAD + (place + 1) * 0.08) + 1]
+        assert min(heard) < 0.6 * to_teeth(faces["sil"])
 
 
 @given(CUES)

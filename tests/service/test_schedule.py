@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -55,3 +57,18 @@ def test_faces_do_not_mix() -> None:
     assert [face for face, _ in schedule.due(4)] == ["one"]
     assert schedule.leave("two", 4) == [(1, said(0.0))]
     assert schedule.due(100) == []
+
+
+def test_a_tick_costs_no_more_when_much_is_to_come() -> None:
+    def seconds(count: int) -> float:
+        schedule = Schedule()
+        schedule.plan("face", [said(1.0 + n / 60) for n in range(count)], 0)
+        best = 1.0
+        for _ in range(20):
+            begin = time.perf_counter()
+            for tick in range(20):
+                schedule.due(tick)
+            best = min(best, time.perf_counter() - begin)
+        return best
+
+    assert seconds(20_000) < 50 * seconds(2)
