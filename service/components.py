@@ -180,6 +180,7 @@ class Components:
             except Exception:
                 _LOG.exception("the keys could not be read")
             else:
+                self.tickets.end_of(gone)
                 self.sessions.end_sockets_of(gone)
 
     async def _warm_up(self) -> None:

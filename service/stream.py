@@ -119,7 +119,10 @@ async def _receive(socket: WebSocket, parts: Components, session: Session, viewe
         elif len(text) > parts.settings.max_message_bytes:
             viewer.end(_TOO_BIG, "the message is too big")
         else:
-            await _obey(text, client, parts, session, viewer)
+            # Done to its end though the socket ends meanwhile: a face must not obey what its
+            # session does not know of.
+            with anyio.CancelScope(shield=True):
+                await _obey(text, client, parts, session, viewer)
 
 
 async def _obey(
@@ -131,10 +134,10 @@ async def _obey(
         if isinstance(message, AckMessage):
             viewer.acknowledge(message.tick)
             return
-        parts.sessions.check_commands()
         if not parts.rate.allow(client):
-            viewer.offer(_error("too_many_requests", "too many messages; slow down"))
+            viewer.offer(_TOO_MANY)
             return
+        parts.sessions.check_commands()
         if isinstance(message, IdleMessage):
             await parts.sessions.live(session, _life(message, session))
             return
@@ -148,6 +151,9 @@ async def _obey(
         for warning in warnings:
             viewer.offer({"type": "warning", "message": warning})
     except (ValidationError, UnicodeEncodeError) as error:
+        if not parts.rate.allow(client):  # To say what is wrong takes longer than to obey.
+            viewer.offer(_TOO_MANY)
+            return
         details = error.errors() if isinstance(error, ValidationError) else []
         found = explain(list(details), _plain(text))
         viewer.offer(_error("invalid_message", found.message, found.known))
@@ -169,6 +175,9 @@ def _plain(text: str) -> object:
 
 def _error(name: str, message: str, known: Sequence[str] | None = None) -> Mapping[str, Any]:
     return {"type": "error", **error_body(name, message, known=known)}
+
+
+_TOO_MANY = _error("too_many_requests", "too many messages; slow down")
 
 
 async def _send_event(socket: WebSocket, event: Mapping[str, Any]) -> None:

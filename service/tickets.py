@@ -10,7 +10,7 @@ import hashlib
 import re
 import secrets
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Literal
 
@@ -50,6 +50,34 @@ class Tickets:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._tickets: dict[bytes, Ticket] = {}
+        self._of_pages: dict[tuple[str, str | None], str] = {}
+
+    def of_page(self, session: str, *, key: str | None) -> str:
+        """Return a ticket with which a page shows and moves a session for half a day at least.
+
+        It is the one that was returned before, where that lasts as long: whoever asks for the
+        address again and again takes no more than one of the tickets that a key may have.
+
+        Raises:
+            QuotaExceeded: If the key has as many as are kept.
+        """
+        token = self._of_pages.get((session, key))
+        ticket = None if token is None else self.find(token)
+        if token is None or ticket is None or ticket.expires - self._clock() < MAX_SECONDS / 2:
+            token = self.issue(session, key=key, role="control", seconds=MAX_SECONDS)
+            self._of_pages = {w: t for w, t in self._of_pages.items() if self.find(t) is not None}
+            self._of_pages[session, key] = token
+        return token
+
+    def end_of(self, keys: Collection[str]) -> None:
+        """End the tickets of keys that are no more; a new key of the name has none of them.
+
+        Args:
+            keys: Their names, empty for those that needed none.
+        """
+        self._tickets = {
+            d: each for d, each in self._tickets.items() if (each.key or "") not in keys
+        }
 
     def issue(self, session: str, *, key: str | None, role: Role, seconds: float) -> str:
         """Make a ticket.

@@ -99,7 +99,7 @@ class FaceNow(BaseModel):
     """A face as it is commanded now."""
 
     session_id: str
-    viewer_url: str
+    viewer_url: str = Field(description="Web page that shows the face live, for the user.")
     rig: str
     facs: str = Field(description="What all layers make together; 0 is rest.")
     action_units: dict[str, float]

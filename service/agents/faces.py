@@ -15,7 +15,6 @@ from ..errors import QuotaExceeded, Unprocessable
 from ..facs import with_facs, written
 from ..idle import idle_of
 from ..sessions import Session
-from ..tickets import MAX_SECONDS
 from .answered import EmotionSet, FaceNow, LayerState, OpenedFace, UnitsSet, WriterState
 from .asked import GetState, OpenFace, SetActionUnits, SetEmotion
 from .caller import Caller
@@ -101,7 +100,7 @@ async def get_state(asked: GetState, parts: Components, caller: Caller) -> FaceN
     merged = report["merged"]
     return FaceNow(
         session_id=session.id,
-        viewer_url=caller.viewer_of(session.id),
+        viewer_url=_page_of(session, parts, caller),
         rig=session.rig.name or session.rig.id,
         facs=merged["facs"],
         action_units=merged["action_units"],
@@ -145,13 +144,10 @@ def _held_by(session: Session, owner: str, tick: int) -> dict[str, float]:
 
 
 def _page_of(session: Session, parts: Components, caller: Caller) -> str:
-    """Return the page of a session; where keys are set, with a ticket that lasts a day."""
+    """Return the page of a session; where keys are set, with a ticket that lasts half a day."""
     page = caller.viewer_of(session.id)
     if not session.made_by:
         return page
     with suppress(QuotaExceeded):  # Whoever has so many links out can make one when one is over.
-        ticket = parts.tickets.issue(
-            session.id, key=session.made_by, role="control", seconds=MAX_SECONDS
-        )
-        return f"{page}&ticket={ticket}"
+        return f"{page}&ticket={parts.tickets.of_page(session.id, key=session.made_by)}"
     return page

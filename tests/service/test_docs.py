@@ -52,9 +52,13 @@ def test_every_documented_route_exists(api: str) -> None:
 
 @pytest.mark.parametrize("name", Settings.model_fields)
 def test_every_setting_is_documented(api: str, name: str) -> None:
-    meaning = Settings.model_fields[name].description
-    assert meaning
-    assert re.search(rf"^\| `RISORIUS_{name.upper()}` \| .+ \| {re.escape(meaning)} \|$", api, re.M)
+    field = Settings.model_fields[name]
+    assert field.description
+    meaning = re.escape(field.description)
+    found = re.search(rf"^\| `RISORIUS_{name.upper()}` \| (.+) \| {meaning} \|$", api, re.M)
+    assert found
+    if isinstance(field.default, int | float | str) and field.default != "":
+        assert found[1].lower() == str(field.default).lower()
 
 
 @pytest.mark.parametrize("tool", TOOLS, ids=lambda tool: tool.name)

@@ -430,7 +430,19 @@ def test_the_page_that_an_agent_hands_out_opens_without_a_key(keyed: Keyed) -> N
     assert denied(keyed.stream(session)) == 401
     with keyed.stream(session, query=f"?{query}") as socket:
         first(socket, "hello")
+    looked = called(keyed, "ada", "get_state", {"session_id": session})["structuredContent"]
+    assert looked["viewer_url"] == opened["viewer_url"]
     keyed.call("ada", "DELETE", f"/api/sessions/{session}")
+
+
+def test_counts_are_read_with_any_key_and_name_nobody(keyed: Keyed) -> None:
+    assert keyed.client.get("/metrics").status_code == 401
+    for reader in ("ada", "bob"):
+        text = keyed.call(reader, "GET", "/metrics").text
+        assert "risorius_ticks_total" in text
+        assert not [name for name in keyed.keys if f'"{name}"' in text]
+        assert keyed.session not in text
+        assert keyed.clip not in text
 
 
 # How much it may take.

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from conftest import LOCAL, parts_of, settings_in, until
 from starlette.testclient import TestClient, WebSocketDenialResponse, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
+from service.app import create_app
 from service.protocol import SurfaceFrame, decode_frame
 
 PROTOCOL = "risorius.v1"
@@ -258,3 +263,39 @@ def test_viewers_are_counted(client: TestClient, session: str) -> None:
         assert "risorius_viewers 1.0" in text
         assert "risorius_frames_sent_total" in text
         assert "risorius_ticks_total" in text
+
+
+def test_messages_that_cannot_be_read_count_as_messages(tmp_path: Path) -> None:
+    app = create_app(settings_in(tmp_path, requests_per_second=5.0))
+    with TestClient(app, base_url=LOCAL) as client:
+        until(lambda: bool(app.state.parts.ready.is_set()), seconds=120)
+        session = client.post("/api/sessions", json={}).json()["id"]
+        with connect(client, session) as socket:
+            for _ in range(30):
+                socket.send_text("{")
+            said = {events_until(socket, "error")["error"] for _ in range(20)}
+    assert said == {"invalid_message", "too_many_requests"}
+
+
+def test_what_a_face_obeys_as_its_socket_ends_is_known_to_its_session(
+    client: TestClient, session: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parts = parts_of(client)
+    live, obey = parts.sessions._live[session], parts.runner.apply
+
+    async def obeyed_as_it_ends(*asked: Any) -> int:
+        tick = await obey(*asked)
+        for viewer in live.viewers:
+            viewer.end(1000, "over")
+        await asyncio.sleep(0.1)
+        return tick
+
+    with monkeypatch.context() as patch:
+        patch.setattr(parts.runner, "apply", obeyed_as_it_ends)
+        with connect(client, session) as socket:
+            socket.send_json({"type": "controls", "action_units": {"AU1": 0.5}})
+            with pytest.raises(WebSocketDisconnect):
+                events_until(socket, "never")
+    until(lambda: not live.viewers)
+    assert "puppet" in client.get(f"/api/sessions/{session}").json()["layers"]
+    assert live.held.units("puppet") == {"AU1": 0.5}

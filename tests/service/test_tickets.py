@@ -6,7 +6,7 @@ import pytest
 
 from service.access import Access
 from service.errors import Forbidden, QuotaExceeded
-from service.tickets import Tickets, check_reach
+from service.tickets import MAX_SECONDS, Tickets, check_reach
 
 
 def test_a_ticket_lasts_as_long_as_it_is_said_to() -> None:
@@ -33,6 +33,39 @@ def test_the_tickets_of_a_key_are_bounded_and_those_that_are_over_make_room() ->
     tickets.issue("s", key="bob", role="read", seconds=60.0)
     now[0] = 60.0
     tickets.issue("s", key="ada", role="read", seconds=60.0)
+
+
+def test_a_page_that_is_asked_for_again_keeps_its_ticket() -> None:
+    now = [0.0]
+    tickets = Tickets(clock=lambda: now[0])
+    first = tickets.of_page("s", key="ada")
+    assert {tickets.of_page("s", key="ada") for _ in range(2000)} == {first}
+    assert tickets.of_page("other", key="ada") != first
+    assert tickets.of_page("s", key="bob") != first
+    now[0] = 0.6 * MAX_SECONDS
+    second = tickets.of_page("s", key="ada")
+    assert second != first
+    assert tickets.find(first) is not None  # A page that is open goes on.
+    found = tickets.find(second)
+    assert found is not None
+    assert found.role == "control"
+    now[0] = 3.0 * MAX_SECONDS
+    assert tickets.of_page("s", key="ada") not in (first, second)
+    assert list(tickets._of_pages) == [("s", "ada")]
+
+
+def test_tickets_end_with_their_key_though_another_one_has_its_name() -> None:
+    tickets = Tickets()
+    hers, his, nobody = (
+        tickets.issue("s", key=key, role="read", seconds=60.0) for key in ("ada", "bob", None)
+    )
+    page = tickets.of_page("s", key="ada")
+    tickets.end_of({"ada"})
+    assert tickets.find(hers) is None
+    assert tickets.find(his) is not None
+    assert tickets.of_page("s", key="ada") != page
+    tickets.end_of({""})
+    assert tickets.find(nobody) is None
 
 
 READS = [
