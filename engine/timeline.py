@@ -83,15 +83,18 @@ class Keyframe:
 
     def to_json(self) -> dict[str, object]:
         """Return the keyframe as plain data, without what it does not say."""
-        empty = Keyframe()
-        data = {
-            f.name: getattr(self, f.name)
-            for f in fields(self)
-            if f.name == "time" or getattr(self, f.name) != getattr(empty, f.name)
+        data: dict[str, object] = {
+            name: value
+            for name, value in vars(self).items()
+            if name == "time" or value != _UNSAID[name]
         }
         if self.emotion is not None:
             data["emotion"] = {"label": self.emotion[0], "intensity": self.emotion[1]}
         return data
+
+
+_UNSAID = vars(Keyframe())
+"""What a keyframe says that says nothing."""
 
 
 @dataclass(frozen=True)

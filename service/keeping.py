@@ -27,6 +27,9 @@ class Kept(Protocol):
     def to_row(self, tick: int) -> dict[str, Any]:
         """Return what the store keeps of it at `tick`."""
 
+    def kept(self, row: Mapping[str, Any]) -> None:
+        """Take notice that the store has what `to_row` returned."""
+
 
 class Keeper:
     """The one who writes sessions to the store; rows go there in the order they are made in."""
@@ -79,4 +82,6 @@ class Keeper:
                 session.unsaved = True
             message = "the face obeys, but the database did not take it; send it again"
             return Busy("not_kept", message)
+        for session, row in zip(sessions, rows, strict=True):
+            session.kept(row)
         return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -11,7 +11,8 @@ from engine import TICKS_PER_SECOND, Keyframe, Model, Rig, Writers
 
 from .bodies import KeyframeBody, NewClip
 from .errors import Conflict
-from .sessions import Command, Session, Sessions
+from .sessions import Session, Sessions
+from .tail import Command, Resumed, Tail, follow
 
 LEAD_SECONDS = 2.0
 """Played before what is kept, so that the face has come to where it was: longer than any lag."""
@@ -26,22 +27,24 @@ async def record_last(sessions: Sessions, session: Session, *, last: float, fps:
         Conflict: If nothing was ever set on the face.
     """
     view = await sessions.view(session)
-    commands, rig, model = session.performed, session.rig, session.model
+    tail, rig, model = session.tail.copy(), session.rig, session.model
     return await asyncio.to_thread(
-        recorded_clip, commands, rig, model, now=view.frame.tick, last=last, fps=fps
+        recorded_clip, tail, rig, model, now=view.frame.tick, last=last, fps=fps
     )
 
 
 def recorded_clip(
-    commands: Sequence[Command], rig: Rig, model: Model, *, now: int, last: float, fps: int
+    tail: Tail, rig: Rig, model: Model, *, now: int, last: float, fps: int
 ) -> NewClip:
     """Return the last seconds of a session's timeline as a clip.
 
     A session's time stands still while its face sleeps, and so does the clip's. A face younger
-    than `last` is recorded from its first tick on, bit for bit.
+    than `last` is recorded from its first tick on, bit for bit. What a service told it that was
+    stopped since is there too; the start of the next one is no gap, but what did not outlive it
+    lets go there.
 
     Args:
-        commands: The session's, oldest first.
+        tail: The session's; what was held before it is played on.
         rig: Where it is now; earlier commands are played on it too.
         model: Its numerical model.
         now: Its tick.
@@ -51,23 +54,24 @@ def recorded_clip(
     Raises:
         Conflict: If nothing was ever set on the face.
     """
-    told = [(each.tick, each.command) for each in commands if isinstance(each.command, Keyframe)]
-    if now <= 0 or not told:
+    if now <= tail.begins or not tail.told:
         message = "nothing was ever set on that face, so there is nothing to record; set it first"
         raise Conflict("nothing_recorded", message)
-    begin = max(0, now - round(last * TICKS_PER_SECOND))
+    begin = max(tail.begins, now - round(last * TICKS_PER_SECOND))
+    young = tail.whole and begin == tail.begins
     # Before its first tick a face is at rest, so the lead may begin there.
-    origin = begin - round(LEAD_SECONDS * TICKS_PER_SECOND) if begin else 0
-    held = Writers(rig)
-    played = []
-    for tick, keyframe in told:
-        if tick < origin:
-            for _ in held.expire(tick):
-                pass
-            held.take(keyframe, tick)
-        elif tick < now:
-            played.append(_body(keyframe, (tick - origin) / TICKS_PER_SECOND))
+    origin = begin if young else begin - round(LEAD_SECONDS * TICKS_PER_SECOND)
+    held, early = tail.before, [each for each in tail.commands if each.tick < origin]
+    for each in early:
+        follow(held, each)
+    for _ in held.expire(origin):
+        pass
     before = [_body(keyframe, 0.0) for keyframe in held.keyframes(origin)]
+    late = [each for each in tail.commands if origin <= each.tick < now]
+    played = [
+        _body(keyframe, (tick - origin) / TICKS_PER_SECOND)
+        for tick, keyframe in _played(held, late)
+    ]
     return NewClip.model_validate(
         {
             "rig": rig.id,
@@ -78,6 +82,28 @@ def recorded_clip(
             "model": asdict(model),
         }
     )
+
+
+def _played(held: Writers, commands: Sequence[Command]) -> Iterator[tuple[int, Keyframe]]:
+    """Yield what is played at which tick: where a face began anew, who holds nothing lets go.
+
+    Args:
+        held: By whom what is held before the first of them.
+        commands: In order.
+    """
+    anew = any(isinstance(each.command, Resumed) for each in commands)
+    for each in commands:
+        if isinstance(each.command, Resumed):
+            for over in held.keyframes(each.tick):
+                yield (
+                    each.tick,
+                    Keyframe(layer=over.layer, owner=over.owner, fade=over.fade_out, replace=True),
+                )
+            yield from ((each.tick, keyframe) for keyframe in each.command.held)
+        elif isinstance(each.command, Keyframe):
+            yield each.tick, each.command
+        if anew:
+            follow(held, each)
 
 
 def _body(keyframe: Keyframe, time: float) -> KeyframeBody:

@@ -26,12 +26,10 @@ from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_fram
 from .rigs import Rigs
 from .runner import Look, Move, Runner, Tick, View
 from .store import SessionRow, Store
+from .tail import Command, Resumed, Tail
 from .viewers import Viewer
 
 _LOG = structlog.get_logger("sessions")
-_COMMANDS_KEPT = 20_000
-_LIVED_KEPT = 600
-"""Keyframes of idle life that are kept: more than it plays in the longest recording."""
 _UNWATCHED_SECONDS = 60.0
 """After which the idle life of a face waits that nobody watches or asks for: it would take part of
 each tick from those who are seen."""
@@ -43,14 +41,6 @@ _FORGET_SECONDS = 60
 """How often stored sessions are looked through for those that nobody uses."""
 _VIEWER_LEAVES_SECONDS = 10
 """When to ask again for a viewer's place: nobody knows when one leaves."""
-
-
-@dataclass(frozen=True)
-class Command:
-    """One line of a session's timeline: what took effect at which tick."""
-
-    tick: int
-    command: Keyframe | Move
 
 
 @dataclass(eq=False)
@@ -66,16 +56,16 @@ class Session:
         used: When somebody last spoke to it or watched it.
         frame: Its latest frame.
         held: What each writer holds in each layer, and how long; survives a restart.
-        commands: The timeline so far, oldest first.
+        tail: The last of its timeline.
         idle: The idle life that it has.
         paused: Whether that waits, since nobody has looked for a while.
-        lived: What it did of late, oldest first.
         viewers: The sockets that watch it.
         editing: Held while a live edit derives a rig, so that edits follow each other.
         turns: How often each recipe of an emotion was played on it.
         shown: Ids of the rigs that it was on, the last ones.
         speaking: Layer and owner of what is played at its time, and the tick at which that ends.
         unsaved: Whether it holds anything that the store was not given yet.
+        kept_tick: Its tick as the store was given it last.
     """
 
     id: str
@@ -85,17 +75,17 @@ class Session:
     used: float
     frame: Frame
     held: Writers
+    tail: Tail
     made_by: str = ""
-    commands: deque[Command] = field(default_factory=lambda: deque(maxlen=_COMMANDS_KEPT))
     idle: Idle | None = None
     paused: bool = False
-    lived: deque[Command] = field(default_factory=lambda: deque(maxlen=_LIVED_KEPT))
     viewers: set[Viewer] = field(default_factory=set)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
     turns: Counter[str] = field(default_factory=Counter)
     shown: deque[str] = field(default_factory=lambda: deque(maxlen=_RIGS_REMEMBERED))
     speaking: dict[tuple[str, str], int] = field(default_factory=dict)
     unsaved: bool = False
+    kept_tick: int = 0
     state_changed: bool = False
     _encoded: bytes | None = None
 
@@ -140,7 +130,15 @@ class Session:
             "held": held,
             "used": self.used,
             "life": self.life,
+            "tick": self.tail.elapsed + tick,
+            "tail": self.tail.piece(),
         }
+
+    def kept(self, row: Mapping[str, Any]) -> None:
+        """Take notice that the store has what `to_row` returned."""
+        self.kept_tick = row["tick"] - self.tail.elapsed
+        if row["tail"] is not None:
+            self.tail.kept(row["tail"])
 
     @property
     def life(self) -> dict[str, float] | None:
@@ -148,9 +146,14 @@ class Session:
         return None if self.idle is None else asdict(self.idle)
 
     @property
-    def performed(self) -> list[Command]:
-        """What it was told, and what it did by itself of late, in order."""
-        return sorted([*self.commands, *self.lived], key=lambda each: each.tick)
+    def commands(self) -> list[Command]:
+        """What it was told of late, oldest first."""
+        return [each for each in self.tail.commands if not each.idle]
+
+    @property
+    def lived(self) -> list[Command]:
+        """What it did by itself of late, oldest first."""
+        return [each for each in self.tail.commands if each.idle]
 
     def describe(self) -> dict[str, object]:
         """Return what the API says of it."""
@@ -198,14 +201,6 @@ class Session:
         """Let go of the writers whose time is up at `tick`."""
         for _ in self.held.expire(tick):
             pass
-
-    def note(self, command: Command) -> None:
-        """Put a command into the timeline, where its tick is: it is told of a little late."""
-        self.commands.append(command)
-        if len(self.commands) > 1 and self.commands[-2].tick > command.tick:
-            in_order = sorted(self.commands, key=lambda each: each.tick)
-            self.commands.clear()
-            self.commands.extend(in_order)
 
     def told(self, view: View) -> dict[str, object]:
         """Return what viewers are told of what it holds."""
@@ -320,7 +315,7 @@ class Sessions:
                         life=None if idle is None else asdict(idle),
                     )
                 )
-                return await self._wake(row, rig, model)
+                return await self._wake(row, rig, model, Tail(rig))
             except BaseException:
                 await asyncio.shield(self._forget(session_id))
                 raise
@@ -385,7 +380,7 @@ class Sessions:
             tick = await self._runner.apply(session.id, keyframe)
         except EngineError as error:
             raise refused_by_engine(error) from error
-        session.commands.append(Command(tick, keyframe))
+        session.tail.add(Command(tick, keyframe))
         warnings += session.take(keyframe, tick)
         session.unsaved = session.state_changed = True
         return tick, warnings
@@ -433,7 +428,8 @@ class Sessions:
         self.check_commands()
         move = Move(rig)
         tick = await self._runner.apply(session.id, move)
-        session.commands.append(Command(tick, move))
+        session.tail.add(Command(tick, move))
+        session.tail.on(rig)
         session.shown.append(session.rig.id)
         session.rig, session.held = rig, session.held.on(rig)
         self._rigs.bake(rig)
@@ -518,15 +514,17 @@ class Sessions:
                 session.show(frame)
         for played in tick.played:
             session = self._live.get(played.session)
-            if session is not None and played.idle:
-                session.lived.append(Command(played.tick, played.keyframe))
-            elif session is not None:
-                session.note(Command(played.tick, played.keyframe))
+            if session is None:
+                continue
+            session.tail.add(Command(played.tick, played.keyframe, played.idle))
+            session.unsaved = True
+            if not played.idle:
                 session.take(played.keyframe, played.tick)
-                session.unsaved = session.state_changed = True
+                session.state_changed = True
         for session_id in tick.reset:
             session = self._live.get(session_id)
             if session is not None:
+                session.tail.add(Command(session.frame.tick, Resumed()))
                 session.held.clear()
                 session.speaking.clear()
                 session.unsaved = session.state_changed = True
@@ -586,10 +584,22 @@ class Sessions:
 
     async def _save_changed(self, sessions: Sequence[Session]) -> None:
         """Save those that were commanded, and what is left of leases."""
+        changed = [each for each in sessions if each.unsaved or each.held.alarm() is not None]
         with suppress(Busy):  # The next beat tries again.
-            await self._save(
-                [each for each in sessions if each.unsaved or each.held.alarm() is not None]
-            )
+            await self._save(changed)
+        lived_on = [each for each in sessions if each.frame.tick > each.kept_tick]
+        try:
+            await self._save_ticks(lived_on)
+        except Exception:
+            _LOG.exception("the ticks of sessions could not be saved", sessions=len(lived_on))
+
+    async def _save_ticks(self, sessions: Sequence[Session]) -> None:
+        """Save how long sessions have lived that were told nothing meanwhile."""
+        ticks = {each.id: each.tail.elapsed + each.frame.tick for each in sessions}
+        if ticks:
+            await self._store.aside(lambda: self._store.keep_ticks(ticks))
+        for each in sessions:
+            each.kept_tick = ticks[each.id] - each.tail.elapsed
 
     async def _save(self, sessions: Sequence[Session]) -> None:
         ticks_now = await asyncio.gather(*(self._tick_of(session) for session in sessions))
@@ -639,18 +649,26 @@ class Sessions:
         if row is None or not self._access.sees(row.made_by, session=session_id):
             raise _unknown(session_id)  # Before a face is woken that is not theirs.
         rig = await self._rigs.get(row.rig)
-        return await self._wake(row, rig, Model.for_rig(rig, **row.model))
+        pieces = await self._store.aside(lambda: self._store.tail(session_id))
+        tail = await asyncio.to_thread(
+            lambda: Tail.restored(
+                rig, pieces, elapsed=row.tick, begins=row.begins, before=row.before or ()
+            )
+        )
+        tail.add(Command(0, Resumed(held_from_json(row.held, rig))))
+        session = await self._wake(row, rig, Model.for_rig(rig, **row.model), tail)
+        session.unsaved = True
+        return session
 
-    async def _wake(self, row: SessionRow, rig: Rig, model: Model) -> Session:
+    async def _wake(self, row: SessionRow, rig: Rig, model: Model, tail: Tail) -> Session:
         timeline = Timeline(tuple(held_from_json(row.held, rig)), duration=1.0)
         await self._runner.open(row.id, rig, timeline, model)
         view = await self._runner.view(row.id)
         now, writers = time.time(), Writers(rig)
         session = Session(
-            row.id, rig, model, row.created, now, view.frame, writers, made_by=row.made_by
+            row.id, rig, model, row.created, now, view.frame, writers, tail, made_by=row.made_by
         )
         for keyframe in timeline.keyframes:
-            session.commands.append(Command(view.frame.tick, keyframe))
             session.take(keyframe, view.frame.tick)
         self._live[row.id] = session
         if row.life is not None:  # From now on it is told what its life plays.

@@ -12,8 +12,10 @@ from typing import Any, ClassVar, TypeVar
 from sqlalchemy import (
     JSON,
     BigInteger,
+    Connection,
     Engine,
     Float,
+    ForeignKey,
     String,
     Text,
     bindparam,
@@ -21,6 +23,7 @@ from sqlalchemy import (
     delete,
     event,
     func,
+    insert,
     inspect,
     make_url,
     select,
@@ -97,7 +100,11 @@ class NamedRigRow(Table):
 
 
 class SessionRow(Table):
-    """A session: its rig, its model, the controls it held last, and its idle life if it has one."""
+    """A session: its rig, its model, the controls it held last, and its idle life if it has one.
+
+    `tick` is how long it has lived, services before this one included; `begins` the tick at which
+    its tail begins, with what was held `before`, where that is not the beginning.
+    """
 
     __tablename__ = "sessions"
 
@@ -109,6 +116,22 @@ class SessionRow(Table):
     used: Mapped[float] = mapped_column(Float)
     made_by: Mapped[str] = mapped_column(String(64), default="", server_default="")
     life: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True), default=None)
+    tick: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")
+    begins: Mapped[int | None] = mapped_column(BigInteger, default=None)
+    before: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True), default=None)
+
+
+class TailRow(Table):
+    """A piece of a session's timeline: what one commit brought, up to the tick `last`."""
+
+    __tablename__ = "session_tails"
+
+    session: Mapped[str] = mapped_column(
+        String(64), ForeignKey("sessions.id", ondelete="CASCADE"), primary_key=True
+    )
+    number: Mapped[int] = mapped_column(BigInteger, primary_key=True)
+    last: Mapped[int] = mapped_column(BigInteger)
+    commands: Mapped[list[Any]]
 
 
 class ClipRow(Table):
@@ -130,6 +153,19 @@ class ClipRow(Table):
 
 _KEEP_SESSION = update(SessionRow).where(SessionRow.id == bindparam("which"))
 """One statement for all rows of a commit, compiled once; it sets what their values name."""
+_KEEP_PIECE = insert(TailRow).from_select(
+    ["session", "number", "last", "commands"],
+    # Of a session that was closed meanwhile there is no row, and nothing is kept.
+    select(
+        SessionRow.id,
+        bindparam("piece", type_=BigInteger),
+        bindparam("end", type_=BigInteger),
+        bindparam("lines", type_=JSON),
+    ).where(SessionRow.id == bindparam("which")),
+)
+_CUT_TAIL = delete(TailRow).where(
+    TailRow.session == bindparam("which"), TailRow.last <= bindparam("first")
+)
 
 
 class StoreUnavailable(Exception):
@@ -301,21 +337,34 @@ class Store:
         """Keep what sessions hold now, in one transaction; those that were closed stay so.
 
         Args:
-            rows: Of each its `id`, `rig`, `held`, `used` and `life`.
+            rows: Of each its `id`, `rig`, `held`, `used`, `life` and, if it has lived on, `tick`,
+                and what of its `tail` is not kept yet.
         """
         if not rows:
             return
+        names = ("rig", "held", "used", "life")
+        told = [{"which": row["id"], **{name: row[name] for name in names}} for row in rows]
+        ticks = [{"which": row["id"], "tick": row["tick"]} for row in rows if "tick" in row]
+        tails = [(row["id"], row["tail"]) for row in rows if row.get("tail") is not None]
+        with self.engine.begin() as connection:
+            connection.execute(_KEEP_SESSION, told)
+            if ticks:
+                connection.execute(_KEEP_SESSION, ticks)
+            if tails:
+                _keep_tails(connection, tails)
+
+    def keep_ticks(self, ticks: Mapping[str, int]) -> None:
+        """Keep how long sessions have lived, by their ids."""
         with self.engine.begin() as connection:
             connection.execute(
-                _KEEP_SESSION,
-                [
-                    {
-                        "which": row["id"],
-                        **{name: row[name] for name in ("rig", "held", "used", "life")},
-                    }
-                    for row in rows
-                ],
+                _KEEP_SESSION, [{"which": each, "tick": tick} for each, tick in ticks.items()]
             )
+
+    def tail(self, session_id: str) -> list[tuple[int, list[Any]]]:
+        """Return number and commands of each piece of a session's timeline, in order."""
+        rows = select(TailRow).where(TailRow.session == session_id).order_by(TailRow.number)
+        with self._session() as session:
+            return [(row.number, row.commands) for row in session.scalars(rows)]
 
     def remove_session(self, session_id: str) -> None:
         """Forget a session."""
@@ -409,6 +458,20 @@ class Store:
     def _get(self, table: type[Row], key: str) -> Row | None:
         with self._session() as session:
             return session.get(table, key)
+
+
+def _keep_tails(connection: Connection, tails: Sequence[tuple[str, Any]]) -> None:
+    """Add a piece to the timelines of sessions, and forget what came before they begin now."""
+    pieces = [
+        {"which": which, "piece": tail.number, "end": tail.last, "lines": tail.write()}
+        for which, tail in tails
+    ]
+    connection.execute(_KEEP_PIECE, pieces)
+    for which, tail in tails:
+        if tail.begins is not None:
+            begins = {"which": which, "begins": tail.begins, "before": tail.before}
+            connection.execute(_KEEP_SESSION, begins)
+            connection.execute(_CUT_TAIL, {"which": which, "first": tail.begins})
 
 
 def _add_columns(engine: Engine) -> None:

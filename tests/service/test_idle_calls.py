@@ -21,7 +21,7 @@ from service.embedded import EmbeddedRunner
 from service.idle import lived, with_life
 from service.recording import recorded_clip
 from service.runner import Played
-from service.sessions import Command
+from service.tail import Command, Tail
 
 RIG = builtin_rig("standard")
 SEED = 3
@@ -218,9 +218,11 @@ def test_a_clip_that_lives_commands_it(client: TestClient) -> None:
 
 def test_what_a_life_did_is_recorded_as_it_was() -> None:
     did = [each for each, _ in zip(lived(Idle(seed=4, micro=2.0), RIG), range(60), strict=False)]
-    commands = [Command(ticks(each.time), each) for each in did]
-    now = commands[-1].tick + 1
-    clip = recorded_clip(commands, RIG, Model.for_rig(RIG), now=now, last=600.0, fps=60)
+    tail = Tail(RIG)
+    for each in did:
+        tail.add(Command(ticks(each.time), each, idle=True))
+    now = tail.commands[-1].tick + 1
+    clip = recorded_clip(tail, RIG, Model.for_rig(RIG), now=now, last=600.0, fps=60)
     assert list(clip_timeline(clip, RIG)[0].keyframes) == did
 
 

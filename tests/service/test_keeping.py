@@ -29,6 +29,9 @@ class Counter:
         held = [self.value]
         return {"id": self.id, "rig": "standard", "held": held, "used": float(tick), "life": None}
 
+    def kept(self, row: Mapping[str, Any]) -> None:
+        assert row["id"] == self.id
+
 
 def kept(store: Store, session: str) -> list[Any]:
     row = store.session(session)

@@ -16,6 +16,7 @@ from websockets.sync.client import connect
 
 from service.protocol import SUBPROTOCOL, decode_frame
 from service.starting import Started, service
+from service.store import Store
 
 FACES = 4
 WRITES_A_SECOND = 200
@@ -82,6 +83,13 @@ def number_in(state: dict[str, Any], writer: Writer) -> int:
     return round(10_000 * mine["action_units"]["AU12"])
 
 
+def numbers_told(store: Store, writer: Writer) -> set[int]:
+    """Return the numbers of a writer that stand on its session's timeline."""
+    told = [line[2] for _, lines in store.tail(writer.session) for line in lines]
+    mine = [each for each in told if each.get("owner") == writer.about["owner"]]
+    return {round(10_000 * each["action_units"]["AU12"]) for each in mine}
+
+
 def killed_while_written_to(started: Started, writers: list[Writer]) -> None:
     """Have everybody write, kill the service at once with SIGKILL, and wait for the writers."""
     pause = len(writers) / WRITES_A_SECOND
@@ -113,6 +121,10 @@ def test_a_killed_service_has_what_it_had_answered(tmp_path: Path) -> None:
         writers = [Writer(face, about) for face in faces[:FACES] for about in WRITERS]
         killed_while_written_to(started, writers)
     assert sum(writer.answered for writer in writers) > 0.2 * SECONDS * WRITES_A_SECOND
+    store = Store(f"sqlite:///{tmp_path / 'risorius.sqlite3'}")
+    for writer in writers:
+        assert set(range(1, writer.answered + 1)) <= numbers_told(store, writer)
+    store.close()
     with service(folder, port=port) as again:
         ask = again.ask
         listed = {each["id"] for each in ask("GET", "/api/sessions", None)["sessions"]}
@@ -127,6 +139,10 @@ def test_a_killed_service_has_what_it_had_answered(tmp_path: Path) -> None:
         assert ask("GET", f"/api/clips/{clip}", None)["status"] == "done"
         assert ask("GET", f"/api/clips/{queued}", None)["status"] in ("queued", "running", "done")
         again.wait_for(f"/api/clips/{clip}.glb")
+        # What was told before is recorded, though the face has lived for a moment only.
+        asked = "recording.glb?last=60&wait=0&level=low&textures=0"
+        recorded = ask("GET", f"/api/sessions/{faces[1]}/{asked}", None)
+        assert recorded["status"] in ("queued", "running", "done")
         # A viewer finds the face at its address, moved to what was held.
         address = f"{again.url.replace('http', 'ws')}/api/sessions/{faces[0]}/stream"
         with connect(address, subprotocols=[SUBPROTOCOL]) as viewer:  # type: ignore[list-item]

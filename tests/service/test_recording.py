@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from service.commands import clip_timeline, model_of
 from service.errors import Conflict, Refused
 from service.recording import LEAD_SECONDS, recorded_clip
 from service.runner import Move
-from service.sessions import Command
+from service.tail import Command, Tail
 
 RIG = builtin_rig("standard")
 MODEL = Model.for_rig(RIG, integrator="verlet")
@@ -40,12 +41,18 @@ def commands() -> list[Command]:
     return [Command(tick, keyframe) for tick, keyframe in TOLD.items()]
 
 
+def told(commands: Iterable[Command]) -> Tail:
+    """Return the tail of a new face that was told these."""
+    tail = Tail(RIG)
+    for command in commands:
+        tail.add(command)
+    return tail
+
+
 def live(ticks: int) -> Clip:
     """What the face did, as a live one does it."""
-    keyframes = [Command(t, k) for t, k in TOLD.items()]
     timeline = Timeline(
-        tuple(Keyframe(**{**vars(each.command), "time": each.tick / 60}) for each in keyframes),
-        ticks / 60,
+        tuple(replace(keyframe, time=tick / 60) for tick, keyframe in TOLD.items()), ticks / 60
     )
     return record(RIG, timeline, fps=60, model=MODEL)
 
@@ -57,7 +64,7 @@ def played(clip: NewClip) -> Clip:
 
 
 def test_a_young_face_is_recorded_bit_for_bit() -> None:
-    clip = recorded_clip(commands(), RIG, MODEL, now=NOW, last=60.0, fps=60)
+    clip = recorded_clip(told(commands()), RIG, MODEL, now=NOW, last=60.0, fps=60)
     assert clip.start == 0.0
     assert clip.duration == NOW / 60
     assert np.array_equal(played(clip).displacements, live(NOW).displacements)
@@ -65,7 +72,7 @@ def test_a_young_face_is_recorded_bit_for_bit() -> None:
 
 @pytest.mark.parametrize("now", [NOW, 131])
 def test_the_last_second_is_the_face_s_own(now: int) -> None:
-    clip = recorded_clip(commands(), RIG, MODEL, now=now, last=1.0, fps=60)
+    clip = recorded_clip(told(commands()), RIG, MODEL, now=now, last=1.0, fps=60)
     assert clip.start == LEAD_SECONDS
     seen, was = played(clip), live(now)
     assert len(seen) == 61
@@ -75,20 +82,20 @@ def test_the_last_second_is_the_face_s_own(now: int) -> None:
 
 
 def test_what_is_recorded_is_kept_as_plain_json() -> None:
-    clip = recorded_clip(commands(), RIG, MODEL, now=NOW, last=1.0, fps=30)
+    clip = recorded_clip(told(commands()), RIG, MODEL, now=NOW, last=1.0, fps=30)
     kept = clip.model_dump(mode="json", exclude_unset=True)
     assert NewClip.model_validate(kept) == clip
 
 
 def test_a_face_that_moved_to_another_rig_is_recorded_on_its_last() -> None:
     moved = [*commands(), Command(120, Move(RIG))]
-    clip = recorded_clip(moved, RIG, MODEL, now=NOW, last=60.0, fps=60)
-    assert clip == recorded_clip(commands(), RIG, MODEL, now=NOW, last=60.0, fps=60)
+    clip = recorded_clip(told(moved), RIG, MODEL, now=NOW, last=60.0, fps=60)
+    assert clip == recorded_clip(told(commands()), RIG, MODEL, now=NOW, last=60.0, fps=60)
 
 
 def test_a_face_that_was_told_nothing_has_nothing_to_record() -> None:
     with pytest.raises(Conflict, match="nothing was ever set"):
-        recorded_clip([Command(3, Move(RIG))], RIG, MODEL, now=9, last=1.0, fps=30)
+        recorded_clip(told([Command(3, Move(RIG))]), RIG, MODEL, now=9, last=1.0, fps=30)
 
 
 def test_a_clip_starts_before_its_end() -> None:

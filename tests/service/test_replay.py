@@ -15,8 +15,9 @@ from starlette.testclient import TestClient
 from engine import Keyframe, Model, Rig, Simulator, Timeline, record
 from service.app import create_app
 from service.runner import Move
-from service.sessions import Command, Session
+from service.sessions import Session
 from service.store import Store
+from service.tail import Command
 
 
 def live(client: TestClient, session: str) -> Session:
