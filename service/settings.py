@@ -139,7 +139,7 @@ class Settings(BaseSettings):
         description="Requests and socket messages a second accepted from one client.",
     )
     capacity_share: float = Field(
-        default=0.75,
+        default=0.7,
         gt=0,
         allow_inf_nan=False,
         description="Share of a tick that faces that move may take, as measured, before new "

@@ -21,7 +21,7 @@ from rich.table import Table
 from websockets.exceptions import WebSocketException
 
 from .benching import machine
-from .gaps import gaps_seen
+from .gaps import gaps_seen, stolen_seconds
 from .load import TICK_SECONDS
 from .priority import AWAITED, stand_back
 from .soak_client import Client, Counts, SoakRefused, Viewer, own_service
@@ -124,10 +124,16 @@ def soak(*, minutes: float, share: float, url: str | None, show: Show) -> dict[s
     show("looking for gaps of the machine itself")
     looked = min(_GAP_SECONDS, 6.0 * minutes)
     own = gaps_seen(looked, least=TICK_SECONDS / 2.0, cores=machine()["cores"])
+    before, started = stolen_seconds(), time.monotonic()
     with own_service() as address:
         figures = _loaded(address, minutes, share, show)
+    after, elapsed = stolen_seconds(), time.monotonic() - started
+    stolen = {}
+    if before is not None and after is not None:
+        stolen = {"machine_stolen_ms_a_second": round(1000.0 * (after - before) / elapsed, 2)}
     return {
         **figures,
+        **stolen,
         "machine_gaps_a_minute": round(60.0 * len(own) / looked, 1),
         "machine_longest_gap_ms": round(1000.0 * max(own, default=0.0), 1),
     }

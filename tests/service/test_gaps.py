@@ -7,11 +7,12 @@ import signal
 import subprocess
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
 from service import gaps
-from service.gaps import gaps_seen
+from service.gaps import gaps_seen, stolen_seconds
 
 
 def test_a_process_that_is_stopped_for_a_while_sees_a_gap(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -38,3 +39,13 @@ def test_a_process_that_is_stopped_for_a_while_sees_a_gap(monkeypatch: pytest.Mo
 def test_a_process_that_fails_is_told() -> None:
     with pytest.raises(OSError, match="ended by itself"):
         gaps_seen(float("nan"), least="none", cores=1)  # type: ignore[arg-type]
+
+
+def test_stolen_time_is_read_in_seconds_where_it_is_told(tmp_path: Path) -> None:
+    stat = tmp_path / "stat"
+    stat.write_text("cpu  255216 104655 35341 128701 682 0 800 250 0 0\ncpu0 1 2 3\n")
+    assert stolen_seconds(stat) == 250 / os.sysconf("SC_CLK_TCK")
+    for text in ("", "cpu  1 2 3", "intr 1 2 3 4 5 6 7 8", "cpu 1 2 3 4 5 6 7 many"):
+        stat.write_text(text)
+        assert stolen_seconds(stat) is None
+    assert stolen_seconds(tmp_path / "none") is None

@@ -17,7 +17,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from service.app import create_app
 from service.protocol import SUBPROTOCOL, SurfaceFrame, decode_frame
-from service.server import running
+from service.server import listen, running
 
 
 @pytest.fixture(scope="module")
@@ -128,3 +128,14 @@ def test_a_body_that_is_too_long_is_refused(url: str) -> None:
     if isinstance(refused.value, urllib.error.HTTPError):
         assert refused.value.code == 413
         refused.value.close()
+
+
+def test_what_is_written_to_a_connection_does_not_wait_for_an_answer() -> None:
+    """Else the body of an answer, and each frame, waits 40 ms until what went before is read."""
+    listener = listen("127.0.0.1", 0)
+    with listener, socket.create_connection(listener.getsockname()):
+        accepted, _ = listener.accept()
+        with accepted:
+            assert accepted.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+            # asyncio, too, looks at this before it turns the waiting off.
+            assert accepted.proto == socket.IPPROTO_TCP
