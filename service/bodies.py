@@ -65,6 +65,7 @@ Owner = Annotated[
 
 _DEPTH_LIMIT = 8
 _ITEM_LIMIT = 20_000
+_MOST_VISEMES = 10_000
 _MOST = 2**32 - 1
 """Greatest number in a change: a seed may be any of 32 bits."""
 
@@ -292,7 +293,7 @@ class TimedViseme(Body):
 class SpeechCommand(Body):
     """Visemes in time, played in the layer speech from now on."""
 
-    visemes: Annotated[list[TimedViseme], Field(min_length=1, max_length=10_000)] = Field(
+    visemes: Annotated[list[TimedViseme], Field(min_length=1, max_length=_MOST_VISEMES)] = Field(
         examples=[[{"viseme": "PP", "time": 0.1}, {"viseme": "aa", "time": 0.2}]],
         description="All with time, rising, or all with duration.",
     )
@@ -428,6 +429,9 @@ class KeyframeBody(Controls):
         "those of their owner in the layer, and cover those of others.",
     )
     emotion: Name | EmotionCommand | None = None
+    speech: SpeechCommand | None = Field(
+        default=None, description="Visemes in time, spoken from this keyframe on."
+    )
 
 
 class NewClip(Body):
@@ -449,6 +453,14 @@ class NewClip(Body):
     )
     model: ModelChoice = ModelChoice()
     idle: Life = None
+
+    @model_validator(mode="after")
+    def _speaks_in_bounds(self) -> NewClip:
+        """Refuse more visemes than one speech may have."""
+        visemes = sum(len(each.speech.visemes) for each in self.timeline if each.speech)
+        if visemes > _MOST_VISEMES:
+            raise ValueError(f"{visemes} visemes in its speeches; at most {_MOST_VISEMES}")
+        return self
 
 
 class ControlsMessage(Controls):

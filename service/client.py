@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
 import httpx2
 from websockets.exceptions import InvalidStatus, WebSocketException
@@ -134,6 +134,24 @@ class Client:
             OSError: If the file cannot be written.
         """
         return self._finished(self.json("POST", "/api/clips", clip), path, show)
+
+    def expression(
+        self, facs: str, *, rig: str = "standard", form: str = "png", **query: str | float
+    ) -> bytes:
+        """Return an expression that has settled, as a picture or as a GLB file.
+
+        Args:
+            facs: Which: "6B+12C".
+            rig: Whose: "standard", "amara", or the id of a rig.
+            form: "png", which notebooks show, or "glb".
+            query: What else its address says, such as `size=256, view="three-quarter"`.
+
+        Raises:
+            ServiceError: If it cannot be had; with status 501 nothing there draws pictures.
+        """
+        asked = f"?{urlencode(query)}" if query else ""
+        path = f"/api/rigs/{quote(rig, safe='')}/expressions/{quote(facs, safe='')}.{form}{asked}"
+        return self.call("GET", path).content
 
     def json(self, method: str, path: str, body: object = None) -> Any:
         """Send a request and return the JSON of its answer, None if it has none.

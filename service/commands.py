@@ -21,6 +21,7 @@ from .emotions import Turns, play_emotion
 from .errors import Refused, Unprocessable, refused_by_engine
 from .facs import playable
 from .shapes import shaped
+from .speech import spoken
 
 _OF_BOTH = ("layer", "owner", "weight", "hold", "ttl", "fade_out")
 """What a keyframe of a clip and the emotion in it may both say."""
@@ -76,11 +77,16 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
         Unprocessable: With the first keyframe that cannot be played.
     """
     keyframes = []
+    speeches = []
     warnings = []
     turns: Turns = Counter()
     for index, body in enumerate(clip.timeline):
         try:
             keyframe = _clip_keyframe(body, rig, turns)
+            if body.speech is not None:
+                speech = spoken(body.speech, rig)
+                speeches.append((body.time, speech.keyframes))
+                warnings += [f"keyframe {index}: {warning}" for warning in speech.warnings]
             found = rig.check(keyframe) + [str(clash) for clash in clashes(body, keyframe, rig)]
             warnings += [f"keyframe {index}: {warning}" for warning in found]
         except (EngineError, Refused) as error:
@@ -89,9 +95,10 @@ def clip_timeline(clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
             where = f"{place}: " if place and not refused.message.startswith(place) else ""
             refused.message = f"keyframe {index}: {where}{refused.message}"
             raise refused from error
-        keyframes.append(keyframe)
+        if body.speech is None or body.model_fields_set - {"time", "speech"}:
+            keyframes.append(keyframe)
     try:
-        timeline = Timeline.of(keyframes, clip.duration)
+        timeline = Timeline.of([*keyframes, *_said(speeches)], clip.duration)
     except EngineError as error:
         raise refused_by_engine(error) from error
     if clip.start >= timeline.duration:
@@ -166,7 +173,25 @@ def _field_at_fault(body: KeyframeBody, rig: Rig) -> str:
                 rig.check(_clip_keyframe(KeyframeBody.model_validate(given), rig, Counter()))
             except (EngineError, Refused):
                 return name
+    try:
+        if body.speech is not None:
+            spoken(body.speech, rig)
+    except Refused:
+        return "speech"
     return ""
+
+
+def _said(speeches: Iterable[tuple[float, Sequence[Keyframe]]]) -> list[Keyframe]:
+    """Return the keyframes of speeches, each from its time on.
+
+    A speech takes the place of what its owner has still to say, as it does live.
+    """
+    said: list[Keyframe] = []
+    for time, keyframes in sorted(speeches, key=lambda speech: speech[0]):
+        owners = {keyframe.owner for keyframe in keyframes}
+        said = [each for each in said if each.time < time or each.owner not in owners]
+        said += [replace(keyframe, time=time + keyframe.time) for keyframe in keyframes]
+    return said
 
 
 def _with_emotion(keyframe: Keyframe, body: KeyframeBody, rig: Rig, turns: Turns) -> Keyframe:

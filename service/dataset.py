@@ -64,6 +64,7 @@ def make_dataset(
         _begin(folder, plan)
         show("looking at what is there", 0.0)
         lines = {line["number"]: line for line in _whole(folder)}
+        before = len(lines)
         _write_manifest(folder, lines.values())
         missing = [number for number in range(count) if number not in lines]
         failed: list[str] = []
@@ -73,8 +74,9 @@ def make_dataset(
         with (folder / MANIFEST).open("a", encoding="utf-8") as manifest:
             for done, (index, made) in enumerate(side_by_side(_make, work, jobs=jobs)):
                 if isinstance(made, BrokenProcessPool):
-                    failed.append(f"clip {missing[index]}: its process ended; try fewer --jobs")
-                elif isinstance(made, str):
+                    failed.append(f"clip {missing[index]}: a process ended; try fewer --jobs")
+                    break  # The others ended with it.
+                if isinstance(made, str):
                     failed.append(f"clip {missing[index]}: {made}")
                 else:
                     lines[made["number"]] = made
@@ -86,7 +88,7 @@ def make_dataset(
         raise DatasetRefused(f"{folder} cannot be written: {error.strerror}.") from error
     except EngineError as error:
         raise DatasetRefused(f"The data set cannot be made: {error}.") from error
-    return len(missing) - len(failed), failed
+    return len(lines) - before, failed
 
 
 def _begin(folder: Path, plan: DatasetPlan) -> None:

@@ -30,7 +30,7 @@ from engine import (
 from .awaited import Awaited
 from .bodies import Scale, Units
 from .clashes import clashes
-from .errors import NoPictures, Unprocessable, refused_by_engine
+from .errors import Busy, NoPictures, Unprocessable, refused_by_engine
 from .expression_orders import Face, FaceOrder, PictureOrder
 from .rigs import Rigs, export_tag
 from .stage import NOT_BUILT, Look
@@ -39,6 +39,7 @@ from .workshop import WorkEnded, Workshop
 _LOG = structlog.get_logger("expressions")
 _FADE = 0.15
 """Seconds over which an expression is taken up before it settles; a jump excites the tissue."""
+_RETRY_SECONDS = 5
 _MOST_CHARACTERS = 2048
 """Of a FACS string, as in the bodies of other calls."""
 
@@ -177,9 +178,10 @@ class Expressions:
 
         try:
             return await self._under_way.get(file, made)
-        except WorkEnded:
+        except WorkEnded as error:
             _LOG.exception("an expression could not be made", file=file)
-            raise
+            message = "what made it ended early; ask for it again, and look into the log if it does"
+            raise Busy("not_made", message, retry_after=_RETRY_SECONDS) from error
 
 
 def _keep(path: Path, data: bytes, most_bytes: int) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from .browser import NoBrowser
 from .errors import NoPictures, Unprocessable
 from .expression_orders import PictureOrder
+from .priority import stay_back
 from .stage import CallRefused, Stage
 from .studio import NoViewer, studio
 from .workbench import work
@@ -52,6 +53,7 @@ class _Photographer:
 
 def main() -> None:
     """Photograph until nobody orders any more."""
+    stay_back()
     with ExitStack() as opened:
         work(_Photographer(opened, [Path(folder) for folder in sys.argv[1:3]]).picture)
 

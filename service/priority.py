@@ -27,6 +27,10 @@ _SCHED_SETATTR = {"x86_64": 314, "aarch64": 274, "riscv64": 274}
 """Number of the system call, which the C library has no function for."""
 _ATTRIBUTES = struct.Struct("<IIQiIQQQ")
 """Size, policy (0: the usual one), flags, niceness, priority, slice [ns], deadline, period."""
+_DROP_FROM_BOUNDS = 24
+"""Of `prctl`: a capability that no program which is started from here has (PR_CAPBSET_DROP)."""
+_RAISES_PRIORITIES = 23
+"""The capability to take a higher priority (CAP_SYS_NICE)."""
 _NOT_FOR_CHILDREN = 1
 """Flag: threads that this one starts have the usual slice."""
 
@@ -37,6 +41,29 @@ def stand_back(steps: int = BEHIND) -> None:
         thread = threading.get_native_id()
         nice = os.getpriority(os.PRIO_PROCESS, thread)
         os.setpriority(os.PRIO_PROCESS, thread, min(_NICEST, nice + steps))
+
+
+def stand_back_wholly(steps: int = BEHIND) -> None:
+    """Lower the priority of every thread of this process: libraries start some as they load."""
+    with suppress(OSError, AttributeError):
+        threads = [int(task) for task in os.listdir("/proc/self/task")]
+        for thread in threads:
+            with suppress(OSError):  # It has ended since.
+                nice = os.getpriority(os.PRIO_PROCESS, thread)
+                os.setpriority(os.PRIO_PROCESS, thread, min(_NICEST, nice + steps))
+        return
+    stand_back(steps)
+
+
+def stay_back() -> None:
+    """Have what this thread starts not come before it again, for good.
+
+    Chromium gives its processes a priority above all others where it may, and it may as root; what
+    it draws by then comes before live faces. Without that capability it keeps what it inherits.
+    """
+    if sys.platform == "linux":
+        with suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(_DROP_FROM_BOUNDS, _RAISES_PRIORITIES, 0, 0, 0)
 
 
 def background_pool(threads: int, name: str, *, steps: int = BEHIND) -> ThreadPoolExecutor:

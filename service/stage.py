@@ -92,10 +92,13 @@ class Stage:
             return
         self._rig = ""
         if self._session:
+            # The page first: it would open a session anew when its own is gone.
+            self._page.goto("about:blank")
             call(self._page, "DELETE", f"{self._url}/api/sessions/{self._session}")
         self._session = call(self._page, "POST", f"{self._url}/api/sessions", {"rig": rig})["id"]
         self._socket, self._tick = None, 0
         self._page.goto(f"{self._url}/?session={self._session}&bare=1&still=1&dpr=1")
+        self._page.wait_for_function("() => window.__viewer.connected")
         self._rig = rig
 
     def derive(self, root: str, steps: Sequence[Mapping[str, Any]]) -> str:
@@ -115,8 +118,7 @@ class Stage:
         """Return a PNG file of a face as `frame` has it."""
         page = self._page
         page.set_viewport_size({"width": look.side, "height": look.side})
-        while self._socket is None:  # The page opens it once it has found its session.
-            page.wait_for_timeout(10)
+        assert self._socket is not None, "a rig is shown first"
         self._tick += 1
         shown = surface_frame(replace(frame, tick=self._tick, asleep=True), jaw)
         self._socket.send(encode_frame(shown))

@@ -47,6 +47,7 @@ def studio(*, cache_dir: Path | None = None, viewer_dir: Path | None = None) -> 
             capacity_share=_NO_LIMIT,
             simulation_threads=1,
             max_body_bytes=_LARGE,
+            max_rigs=_LARGE,
         )
         if not (settings.viewer_dir / "index.html").is_file():
             raise NoViewer(NOT_BUILT)

@@ -15,7 +15,7 @@ from engine import EngineError
 
 from .apart import orders_and_answers
 from .errors import Refused, refused_by_engine
-from .priority import stand_back
+from .priority import stand_back_wholly
 
 LENGTH_BYTES = 8
 
@@ -45,7 +45,7 @@ class NotMade:
 
 def work(make: Callable[[Any], Any]) -> None:
     """Make what is ordered until standard input ends, behind live faces."""
-    stand_back()
+    stand_back_wholly()
     orders, answers = orders_and_answers()
     while True:
         try:

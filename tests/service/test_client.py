@@ -95,6 +95,15 @@ def test_a_face_and_a_clip_are_saved(service: Client, face: Face, tmp_path: Path
         assert (tmp_path / name).read_bytes()[:4] == b"glTF"
 
 
+def test_an_expression_is_had_without_a_face(service: Client) -> None:
+    data = service.expression("6B+12C", form="glb", level="low", textures=0)
+    assert data[:4] == b"glTF"
+    assert data != service.expression("6B+12D", form="glb", level="low", textures=0)
+    with pytest.raises(ServiceError) as wrong:
+        service.expression("smile")
+    assert (wrong.value.status, wrong.value.error) == (422, "invalid_notation")
+
+
 def test_a_face_speaks_and_is_silent(face: Face) -> None:
     face.set_emotion("joy", owner="agent")
     spoken = face.speak([{"viseme": "aa", "duration": 20.0}], owner="voice", intensity=0.5)
