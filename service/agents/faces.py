@@ -104,7 +104,11 @@ async def get_state(asked: GetState, parts: Components, caller: Caller) -> FaceN
         rig=session.rig.name or session.rig.id,
         facs=merged["facs"],
         action_units=merged["action_units"],
-        pose={group: merged[group] for group in _POSED if merged.get(group)},
+        pose={
+            group: commanded
+            for group in _POSED
+            if (commanded := {axis: v for axis, v in merged.get(group, {}).items() if v != 0.0})
+        },
         layers=[_layer(name, held) for name, held in report["layers"].items()],
         writers=merged["writers"],
         asleep=view.frame.asleep,

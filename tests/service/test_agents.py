@@ -147,6 +147,10 @@ async def test_the_latest_call_is_the_whole_face(url: str) -> None:
     async with agent(url) as client:
         face = (await call(client, "open_face"))["session_id"]
         await call(client, "set_action_units", session_id=face, facs="4D+L46E+51C")
+        while not (pose := (await call(client, "get_state", session_id=face))["pose"]):
+            pass
+        assert set(pose) == {"head"}  # What is not commanded is left out.
+        assert set(pose["head"]) == {"yaw"}
         await call(client, "set_emotion", session_id=face, label="happiness")
         state = await call(client, "get_state", session_id=face)
         assert state["action_units"] == pytest.approx(resolve_label("happiness").units)

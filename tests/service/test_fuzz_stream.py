@@ -24,6 +24,10 @@ from websockets.sync.client import ClientConnection, connect
 from service.protocol import SUBPROTOCOL, decode_frame
 from service.settings import Settings
 
+pytestmark = pytest.mark.filterwarnings(
+    # Threads of the service are in this process, and draw from `random` while examples are made.
+    "ignore:Do not use the `random` module inside strategies"
+)
 EVENTS = {"hello", "state", "rig", "warning", "error"}
 REFUSED = {1002, 1003, 1007, 1009}
 """Codes with which a socket may be closed for what was sent; 1011 says that the service failed."""
