@@ -29,8 +29,8 @@ def listen(host: str, port: int) -> socket.socket:
         OSError: If the address cannot be used.
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    # With the protocol named: asyncio sends at once only on sockets that say they are TCP's, and the
-    # body of each answer would wait 40 ms for its head to be acknowledged.
+    # With the protocol named: asyncio sends at once only on sockets that say they are TCP's, and
+    # the body of each answer would wait 40 ms for its head to be acknowledged.
     listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
