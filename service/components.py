@@ -208,8 +208,8 @@ class Components:
             _LOG.exception("the service could not warm up")
             return
         # What is there now stays: looking through it again and again would stop every thread,
-        # the simulation's too, for 50 ms at a time.
-        gc.collect()
+        # the simulation's too, for 50 ms at a time. Nor is it looked through now: next to nothing
+        # of what a start makes is garbage, and to find that takes a tenth of it.
         gc.freeze()
         gc.set_threshold(*_GARBAGE)
         self.stage = "ready"
