@@ -21,7 +21,7 @@ from engine import ENGINE_HASH, EngineError, builtin_rig, version
 
 from .bodies import NewClip
 from .clip_files import side_by_side
-from .commands import clip_timeline, model_of
+from .commands import clip_timeline, live_model
 from .dataset_plan import DatasetPlan
 from .deriving import made_from
 from .errors import Refused
@@ -154,7 +154,7 @@ def _made(folder: Path, plan: DatasetPlan, number: int) -> Line:
         steps=person.steps,
         timeline=with_life(timeline, clip, rig),
         fps=clip.fps,
-        model=model_of(clip.model, rig),
+        model=live_model(clip.model, rig),
         start=clip.start,
         level=clip.level,
         textures=maps_of(rig, _nobody) if clip.textures else {},
