@@ -45,8 +45,11 @@ from .facs import (
 )
 from .flesh import Flesh, examine, jolts, path_dependence, random_mixes
 from .frame import Frame, Pose
+from .gltf import FORMS as CLIP_FORMS
 from .gltf import (
+    ClipFile,
     arkit_to_glb,
+    clip_file,
     clip_to_glb,
     face_to_glb,
     performance_of,
@@ -117,6 +120,7 @@ __all__ = [
     "ALIKE",
     "ANYONE",
     "BUILTIN_RIGS",
+    "CLIP_FORMS",
     "ENGINE_HASH",
     "IDLE",
     "LANDMARKS",
@@ -147,6 +151,7 @@ __all__ = [
     "Blend",
     "Cancelled",
     "Clip",
+    "ClipFile",
     "Combination",
     "Cue",
     "Diverged",
@@ -196,6 +201,7 @@ __all__ = [
     "blend",
     "broken_rules",
     "builtin_rig",
+    "clip_file",
     "clip_of",
     "clip_to_glb",
     "cues_of",

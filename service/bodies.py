@@ -320,8 +320,8 @@ class ModelChoice(Body):
 
     integrator: Literal["rk2", "heun", "symplectic_euler", "rk4", "verlet"] = Field(
         default="rk2",
-        description='A session that names none runs "verlet", on the kernel for many faces; '
-        'a clip the paper\'s "rk2".',
+        description='A session or a clip that names none runs "verlet", on the kernel for many '
+        'faces; the paper\'s is "rk2".',
     )
     forces: Literal["rest", "current"] = "rest"
     springs: Literal["continuous", "literal"] = "continuous"
@@ -440,7 +440,21 @@ class NewClip(Body):
     rig: Name = "standard"
     fps: Annotated[int, Field(ge=1, le=60)] = 30
     level: Literal["low", "medium", "high"] = Field(
-        default="high", description="Detail of the drawn skin."
+        default="medium", description="Detail of the drawn skin and hair."
+    )
+    form: Literal["basis", "arkit", "exact"] = Field(
+        default="basis",
+        description="How the file tells the motion: few morph targets made of it, ARKit's 52 by "
+        "name with weights fitted to it, or a morph target a frame.",
+    )
+    tolerance: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.01, le=10)] = Field(
+        default=0.1, description="Largest error of any vertex with the form basis, mm."
+    )
+    quantize: StrictBool = Field(
+        default=True, description="Whether numbers are stored by KHR_mesh_quantization."
+    )
+    sparse: StrictBool = Field(
+        default=True, description="Whether accessors may be sparse, where that is smaller."
     )
     textures: StrictBool = Field(
         default=True, description="Whether the maps of skin and eyes are embedded."

@@ -159,6 +159,24 @@ def clip(
     textures: Annotated[
         bool, typer.Option("--textures/--no-textures", help="Embed the maps of skin and eyes.")
     ] = True,
+    form: Annotated[
+        str | None,
+        typer.Option(help="How files tell the motion: basis (the default), arkit or exact."),
+    ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(min=0.01, max=10, help="Largest error of any vertex with basis, mm: 0.1."),
+    ] = None,
+    quantize: Annotated[
+        bool | None,
+        typer.Option("--quantize/--no-quantize", help="Store numbers by KHR_mesh_quantization."),
+    ] = None,
+    sparse: Annotated[
+        bool | None, typer.Option("--sparse/--no-sparse", help="Allow sparse accessors.")
+    ] = None,
+    level: Annotated[
+        str | None, typer.Option(help="Detail of skin and hair: low, medium (the default) or high.")
+    ] = None,
     csv: Annotated[
         bool,
         typer.Option(
@@ -208,7 +226,7 @@ def clip(
     from engine import EngineError, TrackOptions
 
     from .clip_commands import render
-    from .clip_files import Wanted
+    from .clip_files import Wanted, how_told
     from .rendering import ClipRefused
     from .track_rendering import neutral_of
 
@@ -223,7 +241,8 @@ def clip(
             gaze=gaze,
             max_seconds=seconds,
         )
-        wanted = Wanted(rig, fps, textures, csv, png, url, key, options)
+        told = how_told(form, tolerance, quantize, sparse, level)
+        wanted = Wanted(rig, fps, textures, csv, png, url, key, options, told)
         render(given, output, wanted, jobs=jobs, as_json=as_json)
     except (ClipRefused, EngineError) as refused:
         _refuse(str(refused))

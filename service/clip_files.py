@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import glob
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from engine import EngineError, TrackOptions, TrackReport
+from engine import CLIP_FORMS, LEVELS, EngineError, TrackOptions, TrackReport
 
 from .clip_sheet import draw_clip
 from .playing_again import is_clip, render_again
@@ -38,6 +38,7 @@ class Wanted:
         png: Whether a contact sheet is drawn beside each.
         url, key: A service that renders them; empty renders here.
         options: How trackers' files are read.
+        told: How files tell the motion, where that was said: form, tolerance, level and so on.
     """
 
     rig: str | None = None
@@ -48,6 +49,7 @@ class Wanted:
     url: str = ""
     key: str = ""
     options: TrackOptions = field(default_factory=TrackOptions)
+    told: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,31 @@ class Rendered:
 
     line: str
     report: TrackReport | None = None
+
+
+def how_told(
+    form: str | None,
+    tolerance: float | None,
+    quantize: bool | None,
+    sparse: bool | None,
+    level: str | None,
+) -> dict[str, Any]:
+    """Return what was said of how files tell the motion, by field of a timeline.
+
+    Raises:
+        ClipRefused: For a form or a level that there is not.
+    """
+    for name, value, known in (("form", form, CLIP_FORMS), ("level", level, LEVELS)):
+        if value is not None and value not in known:
+            raise ClipRefused(f"--{name} is {value!r}; expected one of {', '.join(known)}.")
+    said = {
+        "form": form,
+        "tolerance": tolerance,
+        "quantize": quantize,
+        "sparse": sparse,
+        "level": level,
+    }
+    return {name: value for name, value in said.items() if value is not None}
 
 
 def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Rendered:
@@ -77,6 +104,9 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
     if is_clip(source):
         if wanted.rig is not None or wanted.fps is not None:
             raise ClipRefused("A clip is rendered again as it is: leave --rig and --fps out.")
+        if wanted.told:
+            named = " and ".join(f"--{name}" for name in wanted.told)
+            raise ClipRefused(f"A clip is rendered again as it is: leave {named} out.")
         if source.resolve() == output.resolve():
             raise ClipRefused(f"{source} would be written over; name another file with -o.")
         line = render_again(source, output, show=show, csv=truth)
@@ -90,6 +120,7 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
             show=show,
             textured=wanted.textured,
             csv=truth,
+            told=wanted.told,
         )
     else:
         line = render_file(
@@ -100,6 +131,7 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
             show=show,
             textured=wanted.textured,
             csv=truth,
+            told=wanted.told,
         )
     if wanted.png:
         picture = output.with_suffix(".png")
@@ -123,6 +155,7 @@ def _by_service(source: Path, output: Path, wanted: Wanted, show: Show) -> Rende
         fps=wanted.fps,
         show=show,
         textured=wanted.textured,
+        told=wanted.told,
     )
     return Rendered(line)
 

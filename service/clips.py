@@ -17,7 +17,7 @@ from engine import EngineError, Rig, Timeline
 
 from .access import EVERYTHING, Access
 from .bodies import NewClip
-from .commands import clip_timeline, model_of
+from .commands import clip_timeline, how_told, live_model
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .explaining import explain
 from .idle import seed_of, with_life
@@ -241,13 +241,14 @@ class Clips:
             steps=steps,
             timeline=timeline,
             fps=request.fps,
-            model=model_of(request.model, rig),
+            model=live_model(request.model, rig),
             start=request.start,
             level=request.level,
             textures=textures,
             glb=self._path(clip, "glb"),
             csv=self._path(clip, "csv"),
             seed=seed_of(request),
+            **how_told(request),
         )
         figures = await self._renderer.render(order, job.show)
         seconds = figures["simulation_seconds"] + figures["writing_seconds"]

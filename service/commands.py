@@ -116,7 +116,7 @@ def model_of(choice: ModelChoice, rig: Rig) -> Model:
 
 
 def live_model(choice: ModelChoice, rig: Rig) -> Model:
-    """Return the model of a session: of no integrator chosen, the one for many faces at once.
+    """Return the model of a session or a clip: without a choice, the one for many faces at once.
 
     It draws what the paper's does (`tests/engine/test_accuracy.py`); a rig with the paper's own
     forms of springs and forces keeps the paper's integrator too.
@@ -125,6 +125,11 @@ def live_model(choice: ModelChoice, rig: Rig) -> Model:
     if "integrator" in choice.model_fields_set or not model.runs_together:
         return model
     return replace(model, integrator="verlet")
+
+
+def how_told(clip: NewClip) -> dict[str, Any]:
+    """Return how a clip's file is to tell its motion."""
+    return clip.model_dump(include={"form", "tolerance", "quantize", "sparse"})
 
 
 def held_to_json(held: Iterable[Keyframe]) -> list[Any]:

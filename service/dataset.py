@@ -21,7 +21,7 @@ from engine import ENGINE_HASH, EngineError, builtin_rig, version
 
 from .bodies import NewClip
 from .clip_files import side_by_side
-from .commands import clip_timeline, live_model
+from .commands import clip_timeline, how_told, live_model
 from .dataset_plan import DatasetPlan
 from .deriving import made_from
 from .errors import Refused
@@ -161,6 +161,7 @@ def _made(folder: Path, plan: DatasetPlan, number: int) -> Line:
         glb=paths["glb"],
         csv=paths["csv"],
         seed=seed_of(clip),
+        **how_told(clip),
     )
     figures = carry_out(order, lambda _share: None)
     return {

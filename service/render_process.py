@@ -17,7 +17,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from engine import EngineError, Model, Rig, Timeline, clip_to_glb, record
+from engine import EngineError, Model, Rig, Timeline, clip_file, record
 
 from .apart import orders_and_answers
 from .deriving import Steps, made_from
@@ -47,6 +47,7 @@ class Order:
         glb: File to write.
         csv: File for its ground truth, if wanted.
         seed: Of the idle life in the timeline, which the file tells.
+        form, tolerance, quantize, sparse: How the file tells the motion, as `clip_to_glb` says.
     """
 
     root: str
@@ -60,6 +61,10 @@ class Order:
     glb: Path
     csv: Path | None
     seed: int | None = None
+    form: str = "basis"
+    tolerance: float = 0.1
+    quantize: bool = True
+    sparse: bool = True
 
 
 def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
@@ -84,21 +89,28 @@ def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
     ).after(order.start)
     simulated = time.perf_counter()
     drawn = replace(clip, rig=rig.at_level(order.level))
-    data = clip_to_glb(
+    file = clip_file(
         drawn,
+        form=order.form,
+        tolerance=order.tolerance,
+        quantize=order.quantize,
+        sparse=order.sparse,
         textures=order.textures,
         origin={"root": order.root, "steps": list(order.steps)},
         seed=order.seed,
         progress=lambda share: show(SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share),
     )
-    _write(order.glb, data)
+    _write(order.glb, file.data)
     if order.csv is not None:
         _write(order.csv, ground_truth_csv(drawn, order.timeline, order.start).encode())
     return {
         "frames": len(clip),
         "duration": clip.duration if order.start else order.timeline.duration,
-        "bytes": len(data),
+        "bytes": len(file.data),
+        **file.told,
         "simulation_seconds": round(simulated - started, 3),
+        "fit_seconds": round(file.fit_seconds, 3),
+        "write_seconds": round(file.write_seconds, 3),
         "writing_seconds": round(time.perf_counter() - simulated, 3),
     }
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
 from engine import EngineError, Rig, builtin_rig, textures_of
 
 from .bodies import NewClip
-from .commands import clip_timeline, model_of
+from .commands import clip_timeline, how_told, live_model
 from .errors import Refused
 from .explaining import explain
 from .idle import seed_of, with_life
@@ -33,6 +34,7 @@ def render_file(
     show: Show,
     textured: bool = True,
     csv: Path | None = None,
+    told: Mapping[str, Any] | None = None,
 ) -> str:
     """Render `source` to `output` and return one line about it.
 
@@ -44,19 +46,21 @@ def render_file(
         show: Told what is being done, and the share of the work done.
         textured: Whether the file embeds the maps of skin and eyes, unless the timeline says no.
         csv: File for its ground truth, if wanted.
+        told: Overrides how the file tells the motion, by field of the timeline.
 
     Raises:
         ClipRefused: If the file cannot be read, played or written.
     """
     check_folder(output)
     clip = _read(source)
-    clip = clip.model_copy(update={"rig": rig or clip.rig, "fps": fps or clip.fps})
+    update = {"rig": rig or clip.rig, "fps": fps or clip.fps, **(told or {})}
+    clip = clip.model_copy(update=update)
     try:
         show("building the rig", 0.0)
         chosen = builtin_rig(clip.rig)
         timeline, warnings = clip_timeline(clip, chosen)
         timeline = with_life(timeline, clip, chosen)
-        model = model_of(clip.model, chosen)
+        model = live_model(clip.model, chosen)
     except (EngineError, Refused) as error:
         raise ClipRefused(f"{source} cannot be rendered: {error}.") from error
     order = Order(
@@ -71,6 +75,7 @@ def render_file(
         glb=output,
         csv=csv,
         seed=seed_of(clip),
+        **how_told(clip),
     )
     return "\n".join([written(order, source, show), *warnings])
 
@@ -120,6 +125,7 @@ def render_by_service(
     fps: int | None,
     show: Show,
     textured: bool = True,
+    told: Mapping[str, Any] | None = None,
 ) -> str:
     """Have a running service render `source`, save its file, and return one line about it.
 
@@ -132,6 +138,7 @@ def render_by_service(
         fps: Overrides the file's frame rate.
         show: Told what is being done, and the share of the work done.
         textured: Whether the file embeds the maps of skin and eyes, unless the timeline says no.
+        told: Overrides how the file tells the motion, by field of the timeline.
 
     Raises:
         ClipRefused: If the file cannot be read, played or written, or there is no such service.
@@ -141,6 +148,7 @@ def render_by_service(
     check_folder(output)
     clip = _read(source).model_dump(mode="json", exclude_unset=True)
     clip |= {name: value for name, value in (("rig", rig), ("fps", fps)) if value is not None}
+    clip |= dict(told or {})
     clip |= {} if textured else {"textures": False}
     try:
         with Client(url, key=key) as client:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
@@ -11,7 +12,6 @@ from rich.table import Table
 from engine import (
     NEUTRAL_QUANTILE,
     EngineError,
-    Model,
     Track,
     TrackOptions,
     TrackReport,
@@ -20,6 +20,8 @@ from engine import (
     track_timeline,
 )
 
+from .bodies import ModelChoice
+from .commands import live_model
 from .render_process import Order
 from .rendering import ClipRefused, Show, check_folder, maps_of, written
 
@@ -27,7 +29,7 @@ SUFFIXES = (".csv", ".tsv", ".txt", ".jsonl", ".ndjson")
 """Of the files that trackers write."""
 DEFAULT_FPS = 30
 DEFAULT_RIG = "standard"
-DEFAULT_LEVEL = "high"
+DEFAULT_LEVEL = "medium"
 _MOST_NOTES = 20
 
 
@@ -65,6 +67,7 @@ def render_track_file(
     show: Show,
     textured: bool = True,
     csv: Path | None = None,
+    told: Mapping[str, Any] | None = None,
 ) -> tuple[str, TrackReport]:
     """Render a tracker's file to `output`; return one line about it, and what became of its rows.
 
@@ -77,6 +80,7 @@ def render_track_file(
         show: Told what is being done, and the share of the work done.
         textured: Whether the file embeds the maps of skin and eyes.
         csv: File for its ground truth, if wanted.
+        told: How the file tells the motion, and at which level, by field of an order.
 
     Raises:
         ClipRefused: If the file cannot be read, played or written.
@@ -94,12 +98,12 @@ def render_track_file(
         steps=(),
         timeline=track_timeline(track),
         fps=fps or DEFAULT_FPS,
-        model=Model.for_rig(chosen),
+        model=live_model(ModelChoice(), chosen),
         start=0.0,
-        level=DEFAULT_LEVEL,
         textures=maps_of(chosen, show) if textured else {},
         glb=output,
         csv=csv,
+        **{"level": DEFAULT_LEVEL, **(told or {})},
     )
     return written(order, source, show), track.report
 

@@ -9,10 +9,12 @@ import numpy as np
 from ..arrays import Float32Array, FloatArray
 from .error import Check, fewest_shapes, rows_of, vertex_errors
 
-BALANCING_ROUNDS = 6
-"""Times that the weights of vertices and frames are improved; later rounds gain nothing."""
+BALANCING_ROUNDS = 4
+"""Times that the weights of vertices and frames are improved; later rounds gain next to nothing."""
 LEAST_SCALE = 0.05
 """Least weight of a vertex or frame; keeps the weighted motion well conditioned."""
+FIRST_GUESS = 16
+"""Shapes that are tried first."""
 NEGLIGIBLE = 1e-6
 """Share of the tolerance below which all remaining shapes together are not worth having."""
 
@@ -46,7 +48,7 @@ class ShapeSpace:
         """Return the weights, shape (n, k), of other frames [mm], shape (n, v, 3)."""
         return np.asarray((rows_of(frames) * np.repeat(self.vertex_scale, 3)) @ self.inverse)
 
-    def shapes(self, frames: Float32Array) -> FloatArray:
+    def shapes(self, frames: Float32Array, most: int | None = None) -> FloatArray:
         """Return the shapes [mm], shape (k, 3 u), of the frames made from, with all vertices.
 
         Each is a least-squares fit of its own, for `left` is orthonormal; so the first shapes stay
@@ -54,8 +56,9 @@ class ShapeSpace:
 
         Args:
             frames: Displacements [mm], shape (f, u, 3).
+            most: How many are wanted, the strongest; all if None.
         """
-        scaled = self.left * self.frame_scale[:, None]
+        scaled = self.left[:, :most] * self.frame_scale[:, None]
         # Single precision is enough: what it costs is part of the error that is measured.
         return np.asarray(scaled.T.astype(np.float32) @ rows_of(frames), dtype=np.float64)
 
@@ -76,11 +79,13 @@ def balanced_space(
     """
     vertex_scale, frame_scale = np.ones(frames.shape[1]), np.ones(len(frames))
     best: ShapeSpace | None = None
+    start = min(len(frames), FIRST_GUESS)
     for _ in range(BALANCING_ROUNDS):
         trial = _weighted_space(frames, vertex_scale, frame_scale, NEGLIGIBLE * tolerance)
         shapes = trial.shapes(frames).astype(np.float32)
         weights = trial.own_weights.astype(np.float32)
-        count, _ = fewest_shapes(frames, shapes, weights, tolerance, check=check)
+        count, _ = fewest_shapes(frames, shapes, weights, tolerance, start=start, check=check)
+        start = count
         if best is None or count < best.count:
             best = replace(trial, count=count)
         # Judged with too few shapes, for there the error shows where more are wanted.

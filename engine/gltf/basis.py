@@ -7,15 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
-from .balance import ShapeSpace, balanced_space
+from .balance import balanced_space
 from .error import Check, Motion, fewest_shapes, parts_of
+from .packing import WEIGHT_STEPS
 
-SNAPSHOT_COUNT = 400
+SNAPSHOT_COUNT = 300
 """Frames that a basis is first made from; more are added only where those do not suffice."""
-SAMPLE_COUNT = 6000
-"""Vertices that say which shapes are needed; the rest move much like their neighbours."""
-SHARE_DROPPED = 1e-3
-"""Deltas below this share of the tolerance are dropped from a shape."""
+SAMPLE_COUNT = 1000
+"""About as many vertices say which shapes are needed; the rest move much like their neighbours."""
+SPARE_SHAPES = 16
+"""Shapes that are made ready beside twice as many as a sample of the vertices needs."""
+DROPPED, LEAST_DROPPED = 0.08, 1e-3
+"""Deltas below this share of the tolerance are dropped from a shape; the second where the first
+leaves too large an error, which it may when shapes are many."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +37,23 @@ class MotionBasis:
     max_error: float
 
 
-def fit_basis(motion: Motion, *, tolerance: float, check: Check | None = None) -> MotionBasis:
+@dataclass(frozen=True)
+class _Fineness:
+    """Largest error allowed, step of the grid (0 for none) and least delta that is kept, mm."""
+
+    tolerance: float
+    step: float
+    least: float
+
+
+def fit_basis(
+    motion: Motion,
+    *,
+    tolerance: float,
+    step: float = 0.0,
+    dropped: float = LEAST_DROPPED,
+    check: Check | None = None,
+) -> MotionBasis:
     """Return few principal shapes that reproduce `motion` to `tolerance`.
 
     The shapes are the leading singular vectors of the frames, weighted so that the largest error
@@ -43,11 +63,15 @@ def fit_basis(motion: Motion, *, tolerance: float, check: Check | None = None) -
     Args:
         motion: What to reproduce; at least one frame.
         tolerance: Largest error allowed of any vertex in any frame [mm].
+        step: Of the grid that shapes are stored on [mm], and weights on one of their own; 0 for
+            none. On a coarse one there may be an error beyond the tolerance: what is stated counts.
+        dropped: Deltas below this share of the tolerance are dropped.
         check: Called now and then; raises to stop.
     """
+    fine = _Fineness(tolerance, step, dropped * tolerance)
     chosen = np.unique(np.linspace(0, len(motion) - 1, SNAPSHOT_COUNT).round().astype(np.int64))
     while True:
-        basis, errors = _fit_to(motion, chosen, tolerance, check)
+        basis, errors = _fit_to(motion, chosen, fine, check)
         missed = np.setdiff1d(np.flatnonzero(errors > tolerance), chosen)
         if missed.size == 0:
             return basis
@@ -56,36 +80,40 @@ def fit_basis(motion: Motion, *, tolerance: float, check: Check | None = None) -
 
 
 def _fit_to(
-    motion: Motion, chosen: IntArray, tolerance: float, check: Check | None
+    motion: Motion, chosen: IntArray, fine: _Fineness, check: Check | None
 ) -> tuple[MotionBasis, FloatArray]:
     """Return the basis made from the `chosen` frames, and its error in every frame [mm]."""
     frames = motion[chosen]
     stride = max(1, frames.shape[1] // SAMPLE_COUNT)
-    space = balanced_space(np.ascontiguousarray(frames[:, ::stride]), tolerance, check=check)
+    space = balanced_space(np.ascontiguousarray(frames[:, ::stride]), fine.tolerance, check=check)
     weights = space.own_weights
     if len(chosen) < len(motion):
         weights = np.concatenate([space.weights(part[:, ::stride]) for part in parts_of(motion)])
         weights[chosen] = space.own_weights
-    rounded = _rounded(space.shapes(frames), weights, tolerance)
-    count, errors = fewest_shapes(motion, *rounded, tolerance, start=_start(space), check=check)
+    start, tolerance, every = space.count, fine.tolerance, weights.shape[1]
+    # More than twice what a sample of vertices needs is hardly ever looked at.
+    for most in (min(every, 2 * start + SPARE_SHAPES), every):
+        rounded = _rounded(space.shapes(frames, most), weights[:, :most], fine)
+        count, errors = fewest_shapes(motion, *rounded, tolerance, start=start, check=check)
+        if errors.max() <= tolerance:
+            break
     kept = rounded[0][:count].reshape(count, -1, 3)
     own = np.ascontiguousarray(rounded[1][:, :count])
     return MotionBasis(kept, own, float(errors.max())), errors
 
 
-def _start(space: ShapeSpace) -> int:
-    """Return a count that is surely too small: the sample alone needs more."""
-    return max(1, space.count // 2)
-
-
 def _rounded(
-    shapes: FloatArray, weights: FloatArray, tolerance: float
+    shapes: FloatArray, weights: FloatArray, fine: _Fineness
 ) -> tuple[Float32Array, Float32Array]:
     """Return both as they will be written, scaled so that each shape's largest weight is 1."""
     largest = np.abs(weights).argmax(axis=0)
     peaks = weights[largest, np.arange(weights.shape[1])]
     peaks = np.where(peaks == 0, 1.0, peaks)
     points = (shapes * peaks[:, None]).reshape(len(shapes), -1, 3)
-    small = (np.abs(points) < SHARE_DROPPED * tolerance).all(axis=2, keepdims=True)
+    weights = weights / peaks
+    if fine.step:
+        points = np.round(points / fine.step) * fine.step
+        weights = np.round(weights * WEIGHT_STEPS) / WEIGHT_STEPS
+    small = (np.abs(points) < fine.least).all(axis=2, keepdims=True)
     points = np.where(small, 0.0, points)
-    return points.reshape(shapes.shape).astype(np.float32), (weights / peaks).astype(np.float32)
+    return points.reshape(shapes.shape).astype(np.float32), weights.astype(np.float32)

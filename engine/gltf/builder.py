@@ -6,8 +6,9 @@ Layout rules are those of the glTF 2.0 specification, sections 3.6 (buffers and 
 
 from __future__ import annotations
 
+import hashlib
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
@@ -15,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .materials import MATERIALS, Look, Maps
+from .packing import EXTENSION, WEIGHT_STEPS, Grid, Packing, packed, packed_turns
 from .tangents import tangents_of
 
 if TYPE_CHECKING:
@@ -34,6 +36,8 @@ Extras = Mapping[str, Any]
 Textures = Mapping[str, bytes]
 
 _COMPONENTS = {
+    "int8": "BYTE",
+    "int16": "SHORT",
     "float32": "FLOAT",
     "uint32": "UNSIGNED_INT",
     "uint16": "UNSIGNED_SHORT",
@@ -41,7 +45,7 @@ _COMPONENTS = {
 }
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _PNG = b"\x89PNG"
-_SPARSE_GAIN = 0.8
+_SPARSE_GAIN = 0.9
 """A sparse accessor must be at least this much smaller, for it costs the reader a pass."""
 
 
@@ -69,23 +73,35 @@ class Channel:
 class GlbBuilder:
     """Collects the objects of one GLB file; indices that it returns are glTF indices."""
 
-    def __init__(self, extras: Extras, textures: Textures | None = None) -> None:
+    def __init__(
+        self,
+        extras: Extras,
+        textures: Textures | None = None,
+        packing: Packing | None = None,
+    ) -> None:
         """Begin a file.
 
         Args:
             extras: What the file says of itself.
             textures: The head's maps by file name, to be embedded where a material shows them.
+            packing: How its meshes are stored; numbers as they are, where None.
         """
+        self.packing = packing or Packing()
         # pygltflib is annotated in part only, and wrongly where targets may be plain dicts.
         self._gltf: Any = pygltflib.GLTF2(
             asset=pygltflib.Asset(generator="Risorius", extras=dict(extras)),
             scene=0,
             scenes=[pygltflib.Scene(name="risorius")],
         )
+        if self.packing.quantize:
+            self._gltf.extensionsUsed = [EXTENSION]
+            self._gltf.extensionsRequired = [EXTENSION]
         self._blob = bytearray()
+        self._stored: dict[tuple[object, ...], int] = {}
         self._zeros: dict[int, int] = {}
-        self._materials: dict[tuple[str, bool], int] = {}
+        self._materials: dict[tuple[str, bool, tuple[float, ...]], int] = {}
         self._textures = dict(textures or {})
+        self._pictures: dict[str, int] = {}
 
     def tell(self, extras: Extras) -> None:
         """Have the file say more of itself.
@@ -100,36 +116,62 @@ class GlbBuilder:
 
     # Accessors
 
-    def accessor(self, array: Array, *, target: int | None = None, bounds: bool = False) -> int:
-        """Store `array`, shape (n,) or (n, 2 to 4), and return its accessor.
+    def accessor(
+        self,
+        array: Array,
+        *,
+        target: int | None = None,
+        bounds: bool = False,
+        normalized: bool = False,
+    ) -> int:
+        """Store `array`, shape (n,) or (n, 2 to 4), and return its accessor; equal ones share it.
 
         Args:
-            array: float32, uint32, uint16 or uint8.
+            array: float32, or integers of 8, 16 or 32 bits.
             target: ARRAY_BUFFER or ELEMENT_ARRAY_BUFFER for vertex data, None for the rest.
             bounds: State the smallest and largest value per component.
+            normalized: Whether integers stand for -1 to 1, or 0 to 1.
         """
-        accessor = self._describe(array.shape, array.dtype)
-        accessor.bufferView = self._view(array, target)
-        if bounds:
-            _state_bounds(accessor, array)
-        return self._append(self._gltf.accessors, accessor)
+        digest = hashlib.sha256(np.ascontiguousarray(array).tobytes()).digest()
+        key = (digest, array.shape, array.dtype, target, bounds, normalized)
+        if key not in self._stored:  # Both eyes have the same triangles.
+            accessor = self._describe(array.shape, array.dtype)
+            accessor.bufferView = self._view(array, target)
+            accessor.normalized = normalized or None
+            if bounds:
+                _state_bounds(accessor, array)
+            self._stored[key] = self._append(self._gltf.accessors, accessor)
+        return self._stored[key]
 
-    def delta(self, array: Array, *, smallest: float, bounds: bool = False) -> int:
-        """Store a morph target attribute, shape (n, 3), sparse where that is smaller.
+    def moves(self, moves: Array, *, smallest: float, grid: Grid) -> int:
+        """Store the displacements of a morph target [m], shape (n, 3), on the grid of its mesh.
 
-        Args:
-            array: float32 differences from the base attribute.
-            smallest: Rows whose components all stay below this are taken as zero.
-            bounds: State the smallest and largest value per component.
+        Those whose components all stay below `smallest` are taken as none.
         """
-        rows = np.flatnonzero((np.abs(array) >= smallest).any(axis=1))
-        if rows.size == 0:
-            return self._zero(len(array), bounds)
+        kept = np.where((np.abs(moves) >= smallest).any(axis=1, keepdims=True), moves, 0.0)
+        return self._delta(grid.moves(kept.astype(np.float32)), bounds=True)
+
+    def turns(self, turns: Array, *, smallest: float) -> int:
+        """Store the changes of normals of a morph target, shape (n, 3), those above `smallest`."""
+        kept = np.where((np.abs(turns) >= smallest).any(axis=1, keepdims=True), turns, 0.0)
+        if self.packing.quantize:
+            return self._delta(packed_turns(kept), normalized=True)
+        return self._delta(kept.astype(np.float32))
+
+    def _delta(self, array: Array, *, bounds: bool = False, normalized: bool = False) -> int:
+        """Store a morph target attribute, shape (n, 3), sparse where that may be and is smaller."""
+        rows = np.flatnonzero(array.any(axis=1))
+        if rows.size == 0 and self.packing.sparse:
+            return self._zero(len(array))
         values = np.ascontiguousarray(array[rows])
         indices = compact_indices(rows)
-        if indices.nbytes + values.nbytes > _SPARSE_GAIN * array.nbytes:
-            return self.accessor(array, target=pygltflib.ARRAY_BUFFER, bounds=bounds)
+        dense = len(array) * _stride(array)
+        if not self.packing.sparse or indices.nbytes + values.nbytes > _SPARSE_GAIN * dense:
+            return self.accessor(
+                array, target=pygltflib.ARRAY_BUFFER, bounds=bounds, normalized=normalized
+            )
         accessor = self._describe(array.shape, array.dtype)
+        accessor.normalized = normalized or None
         accessor.sparse = pygltflib.Sparse(
             count=len(rows),
             indices=pygltflib.AccessorSparseIndices(
@@ -139,11 +181,11 @@ class GlbBuilder:
             values=pygltflib.AccessorSparseValues(bufferView=self._view(values, None)),
         )
         if bounds:
-            kept = np.concatenate([values, np.zeros((1, 3), np.float32)])
+            kept = np.concatenate([values, np.zeros((1, 3), values.dtype)])
             _state_bounds(accessor, kept if len(rows) < len(array) else values)
         return self._append(self._gltf.accessors, accessor)
 
-    def _zero(self, count: int, bounds: bool) -> int:
+    def _zero(self, count: int) -> int:
         """Return an accessor of `count` zero vectors, which takes no bytes (section 3.6.2.3)."""
         if count not in self._zeros:
             accessor = self._describe((count, 3), np.dtype(np.float32))
@@ -161,9 +203,20 @@ class GlbBuilder:
         )
 
     def _view(self, array: Array, target: int | None) -> int:
+        stride = _stride(array) if target == pygltflib.ARRAY_BUFFER else array[0].nbytes
+        padded = stride > array[0].nbytes
+        if padded:
+            # Vertex attributes begin at multiples of four bytes (section 3.6.2.4).
+            wide = np.zeros((len(array), stride // array.itemsize), array.dtype)
+            wide[:, : array[0].size] = array.reshape(len(array), -1)
+            array = wide
         data = np.ascontiguousarray(array).tobytes()
         view = pygltflib.BufferView(
-            buffer=0, byteOffset=len(self._blob), byteLength=len(data), target=target
+            buffer=0,
+            byteOffset=len(self._blob),
+            byteLength=len(data),
+            byteStride=stride if padded else None,
+            target=target,
         )
         self._blob += data + bytes(-len(data) % 4)
         return self._append(self._gltf.bufferViews, view)
@@ -177,21 +230,25 @@ class GlbBuilder:
         *,
         material: str,
         targets: Sequence[Mapping[str, int]] = (),
+        grid: Grid | None = None,
     ) -> pygltflib.Primitive:
         """Return triangles with vertex `attributes`, each shape (n,) or (n, 2 to 4).
 
         Where the file embeds the colours of the material, those of the vertices are left out:
-        glTF would multiply the two.
+        glTF would multiply the two. On a grid, attributes of our own are left out too.
         """
         maps = self._maps_of(material) if "TEXCOORD_0" in attributes else None
         if maps is not None:
             attributes = self._mapped(attributes, triangles, maps)
-        stored = {
-            name: self.accessor(
-                np.asarray(values), target=pygltflib.ARRAY_BUFFER, bounds=name == "POSITION"
-            )
-            for name, values in attributes.items()
-        }
+        tint: tuple[float, ...] = ()
+        if grid is not None and grid.origin is not None:
+            attributes = {name: each for name, each in attributes.items() if name[0] != "_"}
+            if "COLOR_0" in attributes:
+                # The material has the greatest, so that eight bits are enough for dark hair.
+                tint = tuple(float(value) for value in attributes["COLOR_0"].max(axis=0))
+                colors = attributes["COLOR_0"] / np.maximum(tint, 1e-6)
+                attributes = {**attributes, "COLOR_0": colors}
+        stored = {name: self._attribute(name, each, grid) for name, each in attributes.items()}
         indices = self.accessor(
             compact_indices(np.asarray(triangles).ravel()),
             target=pygltflib.ELEMENT_ARRAY_BUFFER,
@@ -199,9 +256,17 @@ class GlbBuilder:
         return pygltflib.Primitive(
             attributes=pygltflib.Attributes(**stored),
             indices=indices,
-            material=self._material(material, maps),
+            material=self._material(material, maps, tint),
             targets=cast(Any, [dict(target) for target in targets]),
         )
+
+    def _attribute(self, name: str, values: Array, grid: Grid | None) -> int:
+        kind, place = pygltflib.ARRAY_BUFFER, name == "POSITION"
+        if grid is None or grid.origin is None:
+            return self.accessor(np.asarray(values), target=kind, bounds=place)
+        if place:
+            return self.accessor(grid.places(values), target=kind, bounds=True)
+        return self.accessor(packed(name, values), target=kind, normalized=True)
 
     def mesh(
         self,
@@ -236,13 +301,13 @@ class GlbBuilder:
         maps = MATERIALS[material].maps
         return maps if maps is not None and maps.color in self._textures else None
 
-    def _material(self, name: str, maps: Maps | None) -> int:
-        key = (name, maps is not None)
+    def _material(self, name: str, maps: Maps | None, tint: tuple[float, ...] = ()) -> int:
+        key = (name, maps is not None, tint)
         if key not in self._materials:
-            material = _material_named(name)
+            material = _material_named(name, tint)
             picture = MATERIALS[name].picture
             if picture is not None:
-                texture = pygltflib.TextureInfo(index=self.picture(name, picture()))
+                texture = pygltflib.TextureInfo(index=self._shared(name, picture))
                 _shading(material).baseColorTexture = texture
             if maps is not None:
                 self._lay_on(material, maps)
@@ -262,7 +327,13 @@ class GlbBuilder:
             material.occlusionTexture = pygltflib.OcclusionTextureInfo(index=packed)
 
     def _map(self, file: str) -> int:
-        return self.picture(file.partition(".")[0], self._textures[file])
+        return self._shared(file.partition(".")[0], lambda: self._textures[file])
+
+    def _shared(self, name: str, make: Callable[[], bytes]) -> int:
+        """Return the texture of a picture that several materials may show."""
+        if name not in self._pictures:
+            self._pictures[name] = self.picture(name, make())
+        return self._pictures[name]
 
     def picture(self, name: str, data: bytes) -> int:
         """Store a PNG or JPEG; return the texture that shows it (specification, section 3.8)."""
@@ -288,11 +359,19 @@ class GlbBuilder:
         mesh: int | None = None,
         translation: Array | None = None,
         extras: Extras | None = None,
+        grid: Grid | None = None,
     ) -> int:
-        """Add a node under `parent` (the scene, if None), at `translation` mm from it."""
+        """Add a node under `parent` (the scene, if None), at `translation` mm from it.
+
+        One whose mesh lies on a grid is scaled by its step.
+        """
         node = pygltflib.Node(name=name, mesh=mesh, extras=dict(extras or {}))
-        if translation is not None and np.any(translation):
-            node.translation = [float(value) for value in metres(translation)]
+        place = np.zeros(3) if translation is None else metres(translation).astype(np.float64)
+        if grid is not None and grid.origin is not None:
+            place = place + grid.origin
+            node.scale = [grid.step] * 3
+        if np.any(place):
+            node.translation = [float(value) for value in place.astype(np.float32)]
         index = self._append(self._gltf.nodes, node)
         siblings = self._gltf.scenes[0].nodes if parent is None else self._children(parent)
         siblings.append(index)
@@ -303,19 +382,32 @@ class GlbBuilder:
         return children
 
     def animation(self, name: str, times: Array, channels: Sequence[Channel]) -> None:
-        """Add a named animation: every channel has one key per entry of `times`, seconds."""
+        """Add a named animation: every channel has one key per entry of `times`, seconds.
+
+        Channels of the same array share it.
+        """
         keys = self.accessor(np.asarray(times, np.float32), bounds=True)
         animation = pygltflib.Animation(name=name)
+        samplers: dict[int, int] = {}
         for channel in channels:
-            output = self.accessor(np.asarray(channel.values, np.float32))
-            sampler = pygltflib.AnimationSampler(input=keys, output=output, interpolation="LINEAR")
+            if id(channel.values) not in samplers:
+                output = self._animated(channel)
+                sampler = pygltflib.AnimationSampler(
+                    input=keys, output=output, interpolation="LINEAR"
+                )
+                samplers[id(channel.values)] = self._append(animation.samplers, sampler)
             target = pygltflib.AnimationChannelTarget(node=channel.node, path=channel.path)
             animation.channels.append(
-                pygltflib.AnimationChannel(
-                    sampler=self._append(animation.samplers, sampler), target=target
-                )
+                pygltflib.AnimationChannel(sampler=samplers[id(channel.values)], target=target)
             )
         self._gltf.animations.append(animation)
+
+    def _animated(self, channel: Channel) -> int:
+        values = np.asarray(channel.values, np.float32)
+        if channel.path == "weights" and self.packing.quantize and np.abs(values).max() <= 1.0:
+            steps = np.rint(values.astype(np.float64) * WEIGHT_STEPS)
+            return self.accessor(steps.astype(np.int16), normalized=True)
+        return self.accessor(values)
 
     def to_bytes(self) -> bytes:
         """Return the GLB file."""
@@ -329,17 +421,25 @@ class GlbBuilder:
         return len(items) - 1
 
 
+def _stride(array: Array) -> int:
+    """Return the bytes from one vertex to the next, a multiple of four."""
+    return int(array[0].nbytes + 3) // 4 * 4
+
+
 def _state_bounds(accessor: pygltflib.Accessor, array: Array) -> None:
     accessor.min = [float(value) for value in np.atleast_1d(array.min(axis=0))]
     accessor.max = [float(value) for value in np.atleast_1d(array.max(axis=0))]
 
 
-def _material_named(name: str) -> pygltflib.Material:
+def _material_named(name: str, tint: tuple[float, ...]) -> pygltflib.Material:
     look = MATERIALS[name]
+    color = [*look.color[:3], look.color[3]]
+    for channel, value in enumerate(tint):
+        color[channel] *= value
     return pygltflib.Material(
         name=name,
         pbrMetallicRoughness=pygltflib.PbrMetallicRoughness(
-            baseColorFactor=list(look.color), metallicFactor=0.0, roughnessFactor=look.roughness
+            baseColorFactor=color, metallicFactor=0.0, roughnessFactor=look.roughness
         ),
         alphaMode=_alpha_mode(look),
         alphaCutoff=look.cutoff,

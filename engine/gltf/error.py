@@ -41,60 +41,88 @@ def fewest_shapes(
 ) -> tuple[int, FloatArray]:
     """Return the smallest count of shapes that keeps to `tolerance`, all if none does.
 
-    Each walk over the frames lets the count grow where a part of the motion needs more, until a
-    walk finds nothing to add. The second value is the error of each frame [mm], shape (f,).
+    The second value is the error of each frame [mm], shape (f,).
 
     Args:
         motion: What the shapes stand for.
         shapes: Strongest first [mm], shape (k, 3 v).
         weights: Of each shape in each frame, shape (f, k).
         tolerance: Largest error allowed [mm].
-        start: A count that is known to be too small, or one.
-        check: Called before each part of a walk; raises to stop.
+        start: The count that is tried first: near what will do.
+        check: Called before each part of a walk over the frames; raises to stop.
     """
-    count, walked = start, 0
-    errors: list[FloatArray] = []
-    while walked != count:
-        walked, errors = count, []
-        for part, own in zip(parts_of(motion), parts_of(weights), strict=True):
-            if check is not None:
-                check()
-            own_errors = _frame_errors(part, shapes, own, count)
-            if own_errors.max() > tolerance:
-                count = _fewest_of_part(part, shapes, own, tolerance, count)
-            errors.append(own_errors)
-    return count, np.concatenate(errors)
+    start = min(max(1, start), len(shapes))
+    tried: dict[int, FloatArray] = {}
+
+    def enough(count: int) -> bool:
+        tried[count] = _frame_errors(motion, shapes, weights, count, tolerance, check)
+        return bool(tried[count].max() <= tolerance)
+
+    count = smallest(enough, start, len(shapes))
+    if count not in tried or len(tried[count]) < len(motion):
+        tried[count] = _frame_errors(motion, shapes, weights, count, np.inf, check)
+    return count, tried[count]
 
 
-def _fewest_of_part(
-    part: Float32Array,
-    shapes: Float32Array,
-    weights: Float32Array,
-    tolerance: float,
-    too_few: int,
-) -> int:
-    """Return the smallest count above `too_few` that will do for some frames, by bisection."""
-    low, high = too_few, len(shapes)
+def smallest(enough: Callable[[int], bool], start: int, most: int) -> int:
+    """Return the smallest count that is enough, `most` if none below is; from `start` on.
+
+    Steps double until one lies on the other side, then they are halved.
+    """
+    low, high, step = 0, most, 1
+    count = start
+    if enough(start):
+        high = start
+        while high > 1 and enough(count := max(1, high - step)):
+            high, step = count, 2 * step
+        low = count if high > 1 else 0
+    else:
+        low = start
+        while low < most and not enough(count := min(most, low + step)):
+            low, step = count, 2 * step
+        high = min(most, count)
     while high - low > 1:
         middle = (low + high) // 2
-        enough = _frame_errors(part, shapes, weights, middle).max() <= tolerance
-        low, high = (low, middle) if enough else (middle, high)
+        low, high = (low, middle) if enough(middle) else (middle, high)
     return high
 
 
 def _frame_errors(
-    part: Float32Array, shapes: Float32Array, weights: Float32Array, count: int
+    motion: Motion,
+    shapes: Float32Array,
+    weights: Float32Array,
+    count: int,
+    tolerance: float,
+    check: Check | None,
 ) -> FloatArray:
-    """Return the largest vertex error [mm] in each frame with the first `count` shapes."""
-    return np.asarray(vertex_errors(part, shapes, weights, count).max(axis=1))
+    """Return the largest vertex error [mm] of each frame with the first `count` shapes.
+
+    It ends after the part of the frames that misses `tolerance`.
+    """
+    errors = []
+    for part, own in zip(parts_of(motion), parts_of(weights), strict=True):
+        if check is not None:
+            check()
+        errors.append(np.sqrt(_squares(part, shapes, own, count).max(axis=1)))
+        if errors[-1].max() > tolerance:
+            break
+    return np.concatenate(errors).astype(np.float64)
 
 
 def vertex_errors(
     part: Float32Array, shapes: Float32Array, weights: Float32Array, count: int
 ) -> FloatArray:
     """Return the error [mm] of each vertex in each frame, shape (f, v)."""
-    left = (rows_of(part) - weights[:, :count] @ shapes[:count]).reshape(part.shape)
-    return np.asarray(np.sqrt(np.einsum("fvi,fvi->fv", left, left)), dtype=np.float64)
+    return np.sqrt(_squares(part, shapes, weights, count)).astype(np.float64)
+
+
+def _squares(
+    part: Float32Array, shapes: Float32Array, weights: Float32Array, count: int
+) -> Float32Array:
+    left = weights[:, :count] @ shapes[:count]
+    left -= rows_of(part)
+    np.multiply(left, left, out=left)
+    return np.asarray(left[:, 0::3] + left[:, 1::3] + left[:, 2::3])
 
 
 def parts_of(frames: Motion) -> Iterator[Float32Array]:

@@ -7,6 +7,7 @@ left-handed turns about x and z. They compose as yaw, pitch, roll from the outsi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,14 +37,14 @@ class RigidMotion:
         return vectors @ self.rotation.T
 
     @property
-    def quaternion(self) -> FloatArray:
-        """The rotation as x, y, z, w with w >= 0."""
-        return np.asarray(Rotation.from_matrix(self.rotation).as_quat(canonical=True))
-
-    @property
     def still(self) -> bool:
         """Whether nothing moves at all."""
         return not self.shift.any() and bool(np.array_equal(self.rotation, np.eye(3)))
+
+
+def quaternions(rotations: Sequence[FloatArray]) -> FloatArray:
+    """Return rotations, shape (3, 3) each, as x, y, z, w with w >= 0, shape (n, 4)."""
+    return np.asarray(Rotation.from_matrix(np.stack(rotations)).as_quat(canonical=True))
 
 
 def turned(yaw: float, pitch: float, roll: float = 0.0) -> FloatArray:

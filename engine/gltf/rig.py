@@ -132,10 +132,10 @@ def targets_to_glb(
     for part in rig.head.parts:
         if part.follows in carried:
             targets = [
-                _carried_target(part, each[part.follows], frame)
+                carried_target(part, each[part.follows], frame)
                 for each, frame in zip(moved, frames, strict=True)
             ]
-            _add_carried_part(builder, part, pivots[part.follows], names, targets)
+            add_carried_part(builder, part, pivots[part.follows], names, targets)
     return builder.to_bytes()
 
 
@@ -147,7 +147,8 @@ def _still(rig: Rig, frame: Frame) -> bool:
     return all((np.abs(way) < SMALLEST_MOVE).all() for way in (frame.displacements, *ways))
 
 
-def _carried_target(part: Part, motion: RigidMotion, frame: Frame) -> Target:
+def carried_target(part: Part, motion: RigidMotion, frame: Frame) -> Target:
+    """Return how a part that jaw or eye carries changes in a frame, in the head's frame."""
     vertices, normals = _moved(part, motion, frame)
     return {
         "POSITION": metres(vertices - part.vertices),
@@ -161,22 +162,27 @@ def _moved(part: Part, motion: RigidMotion, frame: Frame) -> tuple[FloatArray, F
     return motion.move(vertices), motion.turn(normals)
 
 
-def _add_carried_part(
+def add_carried_part(
     builder: GlbBuilder,
     part: Part,
     parent: Pivot,
     names: Sequence[str],
     targets: Sequence[Target],
-) -> None:
+) -> int:
+    """Add a part with morph targets of how it is carried; return its node."""
+    attributes = part_attributes(part, origin=parent.origin)
+    grid = builder.packing.grid(attributes["POSITION"])
     primitive = builder.primitive(
-        part_attributes(part, origin=parent.origin),
+        attributes,
         part.triangles,
         material=look_name(part),
-        targets=add_targets(builder, targets, smallest=SMALLEST_MOVE),
+        targets=add_targets(builder, targets, smallest=SMALLEST_MOVE, grid=grid),
+        grid=grid,
     )
-    builder.node(
+    return builder.node(
         part_node_name(part),
         parent=parent.node,
         mesh=builder.mesh(part.name, [primitive], target_names=names),
         extras={"role": "part", "material": part.material},
+        grid=grid,
     )

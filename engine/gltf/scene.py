@@ -12,7 +12,7 @@ Skin, strands and tissue hang under `head` too. Every node but the pivots has th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,25 +78,35 @@ def add_pivot(
 
 
 def add_rigid_parts(
-    builder: GlbBuilder, head: Head, pivots: Mapping[str, Pivot], *, skip: Sequence[str] = ()
+    builder: GlbBuilder,
+    head: Head,
+    pivots: Mapping[str, Pivot],
+    *,
+    skip: Sequence[str] = (),
+    drawn_as: Callable[[Part], Part] = lambda part: part,
 ) -> dict[str, int]:
     """Add the parts that move with a bone or an eye, relative to their pivots; return the nodes.
 
     Those that follow a pivot in `skip` are left out, for a caller that has more to say about them.
-    The tongue has a morph target, by which it is put out.
+    The tongue has a morph target, by which it is put out. Each is drawn as `drawn_as` says.
     """
     nodes = {}
     for part in rigid_parts(head):
         if part.follows in skip:
             continue
+        part = drawn_as(part)
         pivot = pivots[part.follows]
         attributes = part_attributes(part, origin=pivot.origin)
+        grid = builder.packing.grid(attributes["POSITION"])
         out = part.name == TONGUE
         primitive = builder.primitive(
             attributes,
             part.triangles,
             material=look_name(part),
-            targets=add_targets(builder, [out_target(part)], smallest=1e-3) if out else (),
+            targets=add_targets(builder, [out_target(part)], smallest=1e-3, grid=grid)
+            if out
+            else (),
+            grid=grid,
         )
         extras: dict[str, object] = {"role": "part", "material": part.material}
         if out:
@@ -106,6 +116,7 @@ def add_rigid_parts(
             parent=pivot.node,
             mesh=builder.mesh(part.name, [primitive], target_names=(TARGET_NAME,) if out else ()),
             extras=extras,
+            grid=grid,
         )
     return nodes
 

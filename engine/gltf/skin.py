@@ -11,6 +11,8 @@ from ..arrays import FloatArray
 from .builder import GlbBuilder, metres
 from .drawn import DrawnFace
 from .materials import look_name
+from .motion import Piece
+from .packing import Grid
 from .scene import Pivot, part_attributes, skin_attributes
 from .targets import Target, add_targets
 
@@ -66,6 +68,59 @@ def add_skin(
         mesh=builder.mesh("skin", primitives, target_names=names),
         translation=-parent.origin,
         extras={"role": "skin", "material": "skin"},
+    )
+
+
+def add_piece(
+    builder: GlbBuilder,
+    face: DrawnFace,
+    parent: Pivot,
+    piece: Piece,
+    *,
+    names: Sequence[str],
+    moves: Sequence[npt.NDArray[np.floating]],
+    turns: Sequence[npt.NDArray[np.floating]],
+    smallest: float,
+    grid: Grid | None = None,
+) -> int:
+    """Add one mesh that changes its form, the skin or strands; return its node.
+
+    Args:
+        builder: The file.
+        face: Whose it is.
+        parent: Where the node hangs.
+        piece: The mesh.
+        names: Of the morph targets, length k.
+        moves: Displacement [mm] per target, shape (v, 3) each.
+        turns: Change of the normals per target, shape (v, 3) each; none for strands.
+        smallest: Moves below this are taken as none [mm].
+        grid: Where its vertices are stored, if not on the grid of the file's packing.
+    """
+    if piece.part is None:
+        attributes = skin_attributes(face.head, vertices=piece.rest)
+        triangles, material, look = face.head.drawn.triangles, "skin", "skin"
+    else:
+        attributes = {**part_attributes(piece.part), "POSITION": metres(piece.rest)}
+        triangles, material = piece.part.triangles, piece.part.material
+        look = look_name(piece.part)
+    grid = grid or builder.packing.grid(attributes["POSITION"])
+    targets = [{"POSITION": metres(move)} for move in moves]
+    for target, turn in zip(targets, turns, strict=False):
+        target["NORMAL"] = turn.astype(np.float32)
+    primitive = builder.primitive(
+        attributes,
+        triangles,
+        material=look,
+        targets=add_targets(builder, targets, smallest=smallest, grid=grid),
+        grid=grid,
+    )
+    return builder.node(
+        piece.name,
+        parent=parent.node,
+        mesh=builder.mesh(piece.name, [primitive], target_names=names),
+        translation=-parent.origin,
+        extras={"role": "skin" if piece.part is None else "strands", "material": material},
+        grid=grid,
     )
 
 

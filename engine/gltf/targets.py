@@ -8,24 +8,38 @@ import numpy as np
 import numpy.typing as npt
 
 from .builder import GlbBuilder
+from .packing import Grid
 
 SMALLEST_TURN = 5e-3
 """Normals that change by less are taken as still: a third of a degree."""
+SMALLEST_TURN_ON_GRID = 8e-3
+"""The same where normals are stored in 8 bits, of which that is one step."""
 
 Target = Mapping[str, npt.NDArray[np.float32]]
 """Change of "POSITION" [m] and "NORMAL", shape (n, 3)."""
 
 
 def add_targets(
-    builder: GlbBuilder, targets: Sequence[Target], *, smallest: float
+    builder: GlbBuilder, targets: Sequence[Target], *, smallest: float, grid: Grid | None = None
 ) -> list[dict[str, int]]:
-    """Store morph targets, without moves below `smallest` [mm] and turns that do not show."""
+    """Store morph targets, without moves below `smallest` [mm] and turns that do not show.
+
+    Args:
+        builder: The file.
+        targets: What to store.
+        smallest: Moves below this are taken as none [mm].
+        grid: Of their mesh.
+    """
     stored = []
     for target in targets:
         kept = {
-            "POSITION": builder.delta(target["POSITION"], smallest=smallest * 1e-3, bounds=True)
+            "POSITION": builder.moves(
+                target["POSITION"], smallest=smallest * 1e-3, grid=grid or Grid()
+            )
         }
         if "NORMAL" in target:
-            kept["NORMAL"] = builder.delta(target["NORMAL"], smallest=SMALLEST_TURN)
+            quantized = builder.packing.quantize
+            least = SMALLEST_TURN_ON_GRID if quantized else SMALLEST_TURN
+            kept["NORMAL"] = builder.turns(target["NORMAL"], smallest=least)
         stored.append(kept)
     return stored

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from engine import builtin_rig
 
 from ..version import version
+from .clips import LENGTHS, measure_clips
 from .contest import measure_contest
 from .crowd import measure_crowds
 from .first_frame import measure_emotion_to_frame
@@ -34,6 +35,7 @@ class Effort(NamedTuple):
         clip: Seconds of animation.
         sweeps: Samples of the roof.
         splits: How fine the meshes are split.
+        lengths: Of the clips whose cost is compared [s].
     """
 
     seconds: float
@@ -44,10 +46,11 @@ class Effort(NamedTuple):
     clip: float
     sweeps: int
     splits: tuple[int, ...]
+    lengths: tuple[float, ...]
 
 
-FULL = Effort(4.0, 0.1, 7, 300, 120, 4.0, 100, SPLITS)
-QUICK = Effort(0.2, 0.01, 3, 20, 8, 0.4, 10, SPLITS[:2])
+FULL = Effort(4.0, 0.1, 7, 300, 120, 4.0, 100, SPLITS, LENGTHS)
+QUICK = Effort(0.2, 0.01, 3, 20, 8, 0.4, 10, SPLITS[:2], (0.5, 1.0))
 PARTS = (
     "peers",
     "integrators",
@@ -56,6 +59,7 @@ PARTS = (
     "latency",
     "emotion_to_frame",
     "output",
+    "clips",
     "roof",
 )
 """What is measured, in this order."""
@@ -93,6 +97,7 @@ def measure(
         "latency": lambda: measure_latencies(rig, commands=effort.commands),
         "emotion_to_frame": lambda: measure_emotion_to_frame(emotions=effort.emotions),
         "output": lambda: measure_output(rig, clip_seconds=effort.clip),
+        "clips": lambda: measure_clips(rig, lengths=effort.lengths),
         "roof": lambda: measure_roof(rig, repeats=effort.sweeps),
     }
     figures: dict[str, Any] = {

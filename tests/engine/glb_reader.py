@@ -27,27 +27,37 @@ class Glb:
         self._blob = data[binary + 8 : binary + 8 + size]
 
     def array(self, accessor: int) -> np.ndarray:
-        """Return an accessor's values, sparse ones filled in."""
+        """Return an accessor's values, sparse ones filled in, normalised ones as what they mean."""
         entry = self.json["accessors"][accessor]
         width, dtype = WIDTHS[entry["type"]], DTYPES[entry["componentType"]]
         values = np.zeros((entry["count"], width), dtype)
         if "bufferView" in entry:
             offset = entry.get("byteOffset", 0)
-            values = self._view(entry["bufferView"], dtype, values.size, offset).reshape(-1, width)
+            values = self._rows(entry["bufferView"], dtype, entry["count"], width, offset)
         if "sparse" in entry:
             sparse = entry["sparse"]
             where = sparse["indices"]
-            rows = self._view(where["bufferView"], DTYPES[where["componentType"]], sparse["count"])
+            kind = DTYPES[where["componentType"]]
+            rows = self._rows(where["bufferView"], kind, sparse["count"], 1, 0)[:, 0]
             values = values.copy()
-            filled = self._view(sparse["values"]["bufferView"], dtype, sparse["count"] * width)
-            values[rows] = filled.reshape(-1, width)
+            values[rows] = self._rows(
+                sparse["values"]["bufferView"], dtype, sparse["count"], width, 0
+            )
+        if entry.get("normalized"):
+            most = np.iinfo(dtype).max
+            values = np.maximum(values.astype(np.float64) / most, -1.0)
         return values[:, 0] if width == 1 else values
 
-    def _view(self, view: int, dtype: str, count: int, offset: int = 0) -> np.ndarray:
+    def _rows(self, view: int, dtype: str, count: int, width: int, offset: int) -> np.ndarray:
         entry = self.json["bufferViews"][view]
-        assert "byteStride" not in entry
+        size = np.dtype(dtype).itemsize
+        stride = entry.get("byteStride", width * size)
         start = entry.get("byteOffset", 0) + offset
-        return np.frombuffer(self._blob, dtype, count, start)
+        assert offset + stride * (count - 1) + width * size <= entry["byteLength"]
+        raw = np.frombuffer(self._blob, np.uint8, stride * (count - 1) + width * size, start)
+        padded = np.concatenate([raw, np.zeros(stride - width * size, np.uint8)])
+        rows = padded.reshape(count, stride)[:, : width * size]
+        return np.ascontiguousarray(rows).view(dtype).reshape(count, width)
 
     def buffer(self, view: int) -> bytes:
         """Return the bytes of a buffer view: an image."""
@@ -128,7 +138,9 @@ class Glb:
                 animated = self.animated(entry["name"], path, time)
                 parts[path] = parts[path] if animated is None else animated
         matrix = np.eye(4)
-        matrix[:3, :3] = rotation_matrix(parts["rotation"])
+        matrix[:3, :3] = rotation_matrix(parts["rotation"]) * np.array(
+            entry.get("scale", (1, 1, 1))
+        )
         matrix[:3, 3] = parts["translation"]
         return matrix
 

@@ -123,5 +123,11 @@ def halved(count: int) -> np.ndarray:
 def small_rig() -> Any:
     """As much of a rig as the writers look at."""
     return SimpleNamespace(
-        id="0123456789abcdef", name="small", head=small_head(), jaw=JawHinge(), action_units={}
+        id="0123456789abcdef",
+        name="small",
+        head=small_head(),
+        jaw=JawHinge(),
+        action_units={},
+        recipe=None,
+        level="high",
     )

@@ -13,7 +13,7 @@ from small_motion import small_clip
 
 from engine.errors import Cancelled
 from engine.gltf import clip_to_glb
-from engine.gltf.clip import DRAWN_SHARE, DrawnMotion
+from engine.gltf.clip import DRAWN_SHARE
 from engine.gltf.drawn import DrawnFace
 from engine.gltf.pose import motions
 
@@ -27,7 +27,7 @@ def clip() -> Any:
 
 @pytest.fixture(scope="module")
 def data(clip: Any) -> bytes:
-    return clip_to_glb(clip, tolerance=0.02)
+    return clip_to_glb(clip, tolerance=0.02, quantize=False)
 
 
 @pytest.fixture(scope="module")
@@ -41,19 +41,21 @@ def expected(clip: Any, frame: int) -> np.ndarray:
     return motions(clip.rig.head, clip.rig.jaw, clip.poses[frame])["head"].move(drawn)
 
 
+def seen(glb: Glb, time: float) -> np.ndarray:
+    """Skin and strands as the file has them, mm."""
+    return 1000 * np.concatenate([glb.positions(name, time=time) for name in ("skin", "brows")])
+
+
 @pytest.mark.parametrize("frame", FRAMES)
 def test_skin_and_strands_are_where_the_engine_has_them(clip: Any, glb: Glb, frame: int) -> None:
-    seen = glb.positions("skin", time=frame / clip.fps) * 1000
-    error = np.linalg.norm(seen - expected(clip, frame), axis=1).max()
+    error = np.linalg.norm(seen(glb, frame / clip.fps) - expected(clip, frame), axis=1).max()
     assert error <= 0.02 + 1e-4
 
 
 def test_stated_error_is_the_true_one(clip: Any, glb: Glb) -> None:
     extras = glb.json["asset"]["extras"]
     errors = [
-        np.linalg.norm(
-            glb.positions("skin", time=frame / clip.fps) * 1000 - expected(clip, frame), axis=1
-        ).max()
+        np.linalg.norm(seen(glb, frame / clip.fps) - expected(clip, frame), axis=1).max()
         for frame in range(len(clip.poses))
     ]
     assert extras["max_error_mm"] == pytest.approx(max(errors), abs=5e-4)
@@ -70,8 +72,8 @@ def test_jaw_node_carries_the_teeth(clip: Any, glb: Glb, frame: int) -> None:
     rotation, shift = jaw.transform(pose.jaw_pitch, pose.jaw_yaw, pose.jaw_thrust)
     moved = (teeth.vertices - jaw.center) @ rotation.T + jaw.center + shift
     moved = motions(head, jaw, pose)["head"].move(moved)
-    seen = glb.positions("teeth.lower", time=frame / clip.fps) * 1000
-    np.testing.assert_allclose(seen, moved, atol=2e-3)
+    placed = glb.positions("teeth.lower", time=frame / clip.fps) * 1000
+    np.testing.assert_allclose(placed, moved, atol=2e-3)
 
 
 def test_eyes_turn_to_the_left_and_up(clip: Any, glb: Glb) -> None:
@@ -101,6 +103,7 @@ def test_nodes_that_stay_still_are_not_animated(clip: Any, glb: Glb) -> None:
     }
     assert moved == {
         ("skin", "weights"),
+        ("brows", "weights"),
         ("head", "rotation"),
         ("jaw", "rotation"),
         ("jaw", "translation"),
@@ -130,14 +133,14 @@ def test_bounds_are_those_of_the_data(glb: Glb) -> None:
 
 
 def test_same_clip_gives_the_same_bytes(clip: Any, data: bytes) -> None:
-    assert clip_to_glb(small_clip(), tolerance=0.02) == data
+    assert clip_to_glb(small_clip(), tolerance=0.02, quantize=False) == data
 
 
 def test_motion_that_is_too_large_to_hold_gives_the_same_file(
     clip: Any, data: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("engine.gltf.clip.BYTES_IN_MEMORY", 0)
-    assert clip_to_glb(clip, tolerance=0.02) == data
+    monkeypatch.setattr("engine.gltf.motion.BYTES_IN_MEMORY", 0)
+    assert clip_to_glb(clip, tolerance=0.02, quantize=False) == data
 
 
 def test_still_clip_still_has_an_animation(clip: Any, tmp_path: Path) -> None:
@@ -146,7 +149,7 @@ def test_still_clip_still_has_an_animation(clip: Any, tmp_path: Path) -> None:
     still.poses = still.poses[:1] * len(still.poses)
     file = clip_to_glb(still)
     (animation,) = Glb(file).json["animations"]
-    assert len(animation["channels"]) == 1
+    assert [c["target"]["path"] for c in animation["channels"]] == ["weights"]
     assert_valid(tmp_path, still=file)
 
 
@@ -171,16 +174,17 @@ def test_three_plays_it(clip: Any, data: bytes, tmp_path: Path) -> None:
 
 def test_writing_says_how_far_it_is(clip: Any, data: bytes) -> None:
     shares: list[float] = []
-    assert clip_to_glb(clip, tolerance=0.02, progress=shares.append) == data
+    assert clip_to_glb(clip, tolerance=0.02, quantize=False, progress=shares.append) == data
     assert shares == sorted(shares)
     assert shares[0] < 1.0
     assert shares[-1] == 1.0
 
 
 def test_drawing_can_be_stopped(clip: Any) -> None:
-    asked = iter([False] * 5 + [True])
+    shares: list[float] = []
     with pytest.raises(Cancelled, match="stopped"):
-        clip_to_glb(clip, cancelled=lambda: next(asked))
+        clip_to_glb(clip, progress=shares.append, cancelled=lambda: True)
+    assert not shares
 
 
 def test_the_search_for_shapes_can_be_stopped(clip: Any) -> None:
@@ -190,18 +194,10 @@ def test_the_search_for_shapes_can_be_stopped(clip: Any) -> None:
     assert shares[-1] == DRAWN_SHARE
 
 
-def test_frames_of_a_sleeping_face_are_drawn_once(
-    clip: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    face = DrawnFace.of(clip.rig.head)
-    moved = clip.displacements[[7, 7, 7, 20, 7]]
-    rest = face.rest_positions()
-    drawn: list[np.ndarray] = []
-    positions = DrawnFace.positions
-    monkeypatch.setattr(
-        DrawnFace, "positions", lambda face, one: drawn.append(one) or positions(face, one)
-    )
-    motion = DrawnMotion(face, rest, moved)[:]
-    assert len(drawn) == 3
-    for frame, one in zip(motion, moved, strict=True):
-        np.testing.assert_array_equal(frame, (positions(face, one) - rest).astype(np.float32))
+def test_frames_of_a_sleeping_face_are_one(clip: Any) -> None:
+    still = small_clip()
+    still.displacements[:] = still.displacements[[7] * 10 + [20] * 10 + [7] * 20]
+    glb = Glb(clip_to_glb(still, form="exact"))
+    assert len(glb.mesh("skin")["extras"]["targetNames"]) == 3
+    shown = [glb.animated("skin", "weights", frame / 30).argmax() for frame in range(40)]
+    assert shown == [0] * 10 + [1] * 10 + [2] * 20

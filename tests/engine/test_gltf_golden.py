@@ -25,7 +25,7 @@ FILES = {
     "surface": partial(surface_to_glb, RIG),
     "face": partial(face_to_glb, RIG, FRAME),
     "rig": partial(targets_to_glb, RIG, ("AU26",), [FRAME]),
-    "clip": partial(clip_to_glb, small_clip()),
+    "clip": partial(clip_to_glb, small_clip(), quantize=False),
 }
 
 

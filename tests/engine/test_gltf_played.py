@@ -31,7 +31,6 @@ KEYFRAMES = tuple(
 def small_performance(timeline: Timeline) -> Any:
     """The small clip as if that timeline had been played on it."""
     clip = vars(small_clip(4))
-    clip["rig"] = SimpleNamespace(**vars(clip["rig"]), recipe=None, level="high")
     return SimpleNamespace(
         **{**clip, "timeline": timeline, "model": Model(integrator="verlet"), "start": 0.25}
     )

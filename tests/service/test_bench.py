@@ -81,6 +81,24 @@ def test_an_emotion_is_timed_to_its_first_frame_beside_others(figures: Figures) 
     assert at_once["moved_median_ticks"] < onset["moved_median_ticks"]
 
 
+def test_clips_are_measured_by_length_and_by_form(figures: Figures) -> None:
+    rows = figures["clips"]
+    assert [(row["form"], row["seconds"]) for row in rows] == [
+        ("basis", 0.5),
+        ("basis", 1.0),
+        ("arkit", 1.0),
+        ("exact", 1.0),
+    ]
+    for row in rows:
+        assert row["bytes"] < row["bytes_with_textures"]
+        for name in ("simulation_seconds", "fit_seconds", "write_seconds", "seconds_a_second"):
+            assert row[name] >= 0
+    basis, exact = rows[1], rows[3]
+    assert basis["error_mm"] <= 0.1
+    assert basis["targets"] < exact["targets"]
+    assert basis["bytes"] < exact["bytes"]
+
+
 def test_one_part_is_measured_alone() -> None:
     figures = measure(only=["roof"], quick=True)
     assert "crowds" not in figures
