@@ -1,17 +1,19 @@
 """An agent over the Model Context Protocol: it opens a face, feels, winks, looks, and exports.
 
 python docs/examples/mcp_agent.py [URL] [--seconds 3]
-
-A chat client that has the address does the same; its model chooses what is written down here.
 """
 
 import argparse
 import asyncio
+import os
 from typing import Any
 
+import httpx2
 from mcp import Client
+from mcp.client.streamable_http import streamable_http_client
 from mcp_types import Implementation, TextContent
 
+KEY = os.environ.get("RISORIUS_API_KEY", "")  # Where the service asks for one.
 NAME = Implementation(name="example-agent", version="1")  # Its commands are held under this name.
 
 
@@ -28,11 +30,10 @@ async def call(agent: Client, tool: str, **arguments: Any) -> dict[str, Any]:
 
 async def perform(url: str, seconds: float) -> None:
     """Do what an agent would that is told good news."""
-    async with Client(f"{url}/mcp/", client_info=NAME) as agent:
+    http = httpx2.AsyncClient(headers={"X-API-Key": KEY}, timeout=120)
+    there = streamable_http_client(f"{url}/mcp/", http_client=http)
+    async with http, Client(there, client_info=NAME) as agent:
         print("tools:", ", ".join(tool.name for tool in (await agent.list_tools()).tools))
-        listed = await call(agent, "list_expressions", parts=["emotions"])
-        labels = [line["label"] for line in listed["emotions"]]
-        print(len(labels), "emotions:", ", ".join(labels[:6]), "…")
         face = await call(agent, "open_face")
         print("watch it:", face["viewer_url"])
         me = {"session_id": face["session_id"]}
