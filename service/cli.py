@@ -210,7 +210,8 @@ def clip(
     gaze: Annotated[bool, typer.Option("--gaze/--no-gaze", help="Tracker: move the eyes.")] = True,
     seconds: Annotated[float, typer.Option(help="Tracker: longest clip.")] = 120.0,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print what became of a tracker's file as JSON.")
+        bool,
+        typer.Option("--json", help="Print figures, and what became of a tracker's rows, as JSON."),
     ] = False,
     _schema: Annotated[
         bool,

@@ -10,7 +10,7 @@ import typer
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from engine import EngineError, TrackReport
+from engine import EngineError
 
 from .clip_files import Rendered, Wanted, files_of, outputs_of, render_many, render_one, usual_jobs
 from .rendering import ClipRefused
@@ -28,7 +28,7 @@ def render(
         output: A GLB file, or a folder where there are several.
         wanted: How.
         jobs: Of several, how many at a time; None is one a core.
-        as_json: Print what became of trackers' files as JSON.
+        as_json: Print what became of them as JSON.
 
     Raises:
         ClipRefused: If the only file cannot be rendered, or none of several is even begun.
@@ -38,7 +38,7 @@ def render(
     several = len(sources) > 1 or given[0].is_dir()
     if not several and not output.is_dir():
         rendered = _with_bar(sources[0], output, wanted)
-        _tell(rendered.report, as_json=as_json)
+        _tell(rendered, as_json=as_json)
         console.print(escape(rendered.line), soft_wrap=True)
         return
     outputs = outputs_of(sources, output)
@@ -71,8 +71,7 @@ def _all(
             progress.advance(task)
             if isinstance(rendered, Rendered):
                 console.print(escape(rendered.line), soft_wrap=True)
-                if rendered.report is not None:
-                    reports[str(sources[number])] = rendered.report.to_json()
+                reports[str(sources[number])] = rendered.to_json()
             else:
                 failed += 1
                 console.print(escape(str(rendered)), style="red", soft_wrap=True)
@@ -81,14 +80,12 @@ def _all(
     return failed
 
 
-def _tell(report: TrackReport | None, *, as_json: bool) -> None:
-    if report is None:
-        return
+def _tell(rendered: Rendered, *, as_json: bool) -> None:
     if as_json:
-        typer.echo(json.dumps(report.to_json(), indent=2))
-        return
-    for table in report_tables(report):
-        console.print(table)
+        typer.echo(json.dumps(rendered.to_json(), indent=2))
+    elif rendered.report is not None:
+        for table in report_tables(rendered.report):
+            console.print(table)
 
 
 def _bar() -> Progress:

@@ -54,10 +54,16 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Rendered:
-    """What became of a file: a line about it, and of a tracker's, what became of its rows."""
+    """What became of a file: lines about it, its figures, and of a tracker's, that of its rows."""
 
     line: str
+    figures: Mapping[str, Any]
     report: TrackReport | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as plain data: the report of a tracker's file, and the figures of its clip."""
+        rows = {} if self.report is None else self.report.to_json()
+        return {**rows, "clip": dict(self.figures)}
 
 
 def how_told(
@@ -109,9 +115,9 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
             raise ClipRefused(f"A clip is rendered again as it is: leave {named} out.")
         if source.resolve() == output.resolve():
             raise ClipRefused(f"{source} would be written over; name another file with -o.")
-        line = render_again(source, output, show=show, csv=truth)
+        made = render_again(source, output, show=show, csv=truth)
     elif is_track(source):
-        line, report = render_track_file(
+        made, report = render_track_file(
             source,
             output,
             options=wanted.options,
@@ -123,7 +129,7 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
             told=wanted.told,
         )
     else:
-        line = render_file(
+        made = render_file(
             source,
             output,
             rig=wanted.rig,
@@ -133,11 +139,12 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
             csv=truth,
             told=wanted.told,
         )
+    line = made.line
     if wanted.png:
         picture = output.with_suffix(".png")
         draw_clip(output, picture, show)
         line += f"\n{picture}: its frames, drawn"
-    return Rendered(line, report)
+    return Rendered(line, made.figures, report)
 
 
 def _by_service(source: Path, output: Path, wanted: Wanted, show: Show) -> Rendered:
@@ -146,7 +153,7 @@ def _by_service(source: Path, output: Path, wanted: Wanted, show: Show) -> Rende
         raise ClipRefused(f"{what} is rendered here: leave --url out.")
     if wanted.csv or wanted.png:
         raise ClipRefused("Ground truth and pictures are made here: leave --url out.")
-    line = render_by_service(
+    made = render_by_service(
         source,
         output,
         url=wanted.url,
@@ -157,7 +164,7 @@ def _by_service(source: Path, output: Path, wanted: Wanted, show: Show) -> Rende
         textured=wanted.textured,
         told=wanted.told,
     )
-    return Rendered(line)
+    return Rendered(made.line, made.figures)
 
 
 def files_of(given: Sequence[Path]) -> list[Path]:

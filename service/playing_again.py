@@ -10,7 +10,7 @@ from engine import ENGINE_HASH, EngineError, Performance, performance_of
 from .deriving import made_from
 from .errors import Refused
 from .render_process import Order
-from .rendering import ClipRefused, Show, check_folder, maps_of, written
+from .rendering import ClipRefused, Outcome, Show, check_folder, maps_of, written
 
 SUFFIX = ".glb"
 _MOST_BYTES = 2**30
@@ -22,10 +22,10 @@ def is_clip(source: Path) -> bool:
     return source.suffix.lower() == SUFFIX
 
 
-def render_again(source: Path, output: Path, *, show: Show, csv: Path | None = None) -> str:
-    """Render a clip's file to `output` as it was made, and return one line about it.
+def render_again(source: Path, output: Path, *, show: Show, csv: Path | None = None) -> Outcome:
+    """Render a clip's file to `output` as it was made, and return what became of it.
 
-    The same engine makes the same bytes; of another one the line warns.
+    The same engine makes the same bytes; of another one it warns.
 
     Args:
         source: A GLB file that `clip` or the service made.
@@ -39,13 +39,14 @@ def render_again(source: Path, output: Path, *, show: Show, csv: Path | None = N
     check_folder(output)
     performance = _read(source)
     order = _order(source, performance, output, csv, show)
-    line = written(order, source, show)
-    if performance.engine != ENGINE_HASH:
-        line += (
-            f"\n{source} was made by the engine of Risorius {performance.version},"
-            f" {performance.engine[:12]}; this one, {ENGINE_HASH[:12]}, may make other bytes of it."
-        )
-    return line
+    made = written(order, source, show)
+    if performance.engine == ENGINE_HASH:
+        return made
+    warning = (
+        f"{source} was made by the engine of Risorius {performance.version},"
+        f" {performance.engine[:12]}; this one, {ENGINE_HASH[:12]}, may make other bytes of it."
+    )
+    return Outcome(f"{made.line}\n{warning}", {**made.figures, "warnings": [warning]})
 
 
 def _read(source: Path) -> Performance:

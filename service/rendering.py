@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,14 @@ from .render_process import SIMULATION_SHARE, Order, carry_out
 Show = Callable[[str, float], None]
 
 
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a file: lines about it, and its figures as the service reports them."""
+
+    line: str
+    figures: Mapping[str, Any]
+
+
 class ClipRefused(Exception):
     """A file that cannot be rendered; the message is one sentence."""
 
@@ -35,8 +44,8 @@ def render_file(
     textured: bool = True,
     csv: Path | None = None,
     told: Mapping[str, Any] | None = None,
-) -> str:
-    """Render `source` to `output` and return one line about it.
+) -> Outcome:
+    """Render `source` to `output` and return what became of it.
 
     Args:
         source: A timeline as `POST /api/clips` takes it.
@@ -77,7 +86,8 @@ def render_file(
         seed=seed_of(clip),
         **how_told(clip),
     )
-    return "\n".join([written(order, source, show), *warnings])
+    made = written(order, source, show)
+    return Outcome("\n".join([made.line, *warnings]), {**made.figures, "warnings": warnings})
 
 
 def maps_of(rig: Rig, show: Show) -> Mapping[str, bytes]:
@@ -86,8 +96,8 @@ def maps_of(rig: Rig, show: Show) -> Mapping[str, bytes]:
     return textures_of(rig)
 
 
-def written(order: Order, source: Path, show: Show) -> str:
-    """Carry out `order` here, and return one line about its file.
+def written(order: Order, source: Path, show: Show) -> Outcome:
+    """Carry out `order` here, and return what became of it.
 
     Args:
         order: What to render, and where to.
@@ -109,10 +119,11 @@ def written(order: Order, source: Path, show: Show) -> str:
         raise ClipRefused(f"{order.glb} cannot be written: {error.strerror}.") from error
     show("done", 1.0)
     seconds = figures["simulation_seconds"] + figures["writing_seconds"]
-    return (
+    line = (
         f"{order.glb}: {figures['frames']} frames, {figures['duration']:g} s, "
         f"{figures['bytes'] / 1e6:.1f} MB, in {seconds:.1f} s"
     )
+    return Outcome(line, figures)
 
 
 def render_by_service(
@@ -126,8 +137,8 @@ def render_by_service(
     show: Show,
     textured: bool = True,
     told: Mapping[str, Any] | None = None,
-) -> str:
-    """Have a running service render `source`, save its file, and return one line about it.
+) -> Outcome:
+    """Have a running service render `source`, save its file, and return what became of it.
 
     Args:
         source: A timeline as `POST /api/clips` takes it.
@@ -164,7 +175,7 @@ def render_by_service(
         f"{output}: {report['frames']} frames, {report['duration']:g} s, "
         f"{report['bytes'] / 1e6:.1f} MB, by {url}"
     )
-    return "\n".join([line, *report["warnings"]])
+    return Outcome("\n".join([line, *report["warnings"]]), report)
 
 
 def check_folder(output: Path) -> None:

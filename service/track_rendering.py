@@ -23,7 +23,7 @@ from engine import (
 from .bodies import ModelChoice
 from .commands import live_model
 from .render_process import Order
-from .rendering import ClipRefused, Show, check_folder, maps_of, written
+from .rendering import ClipRefused, Outcome, Show, check_folder, maps_of, written
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".jsonl", ".ndjson")
 """Of the files that trackers write."""
@@ -68,8 +68,8 @@ def render_track_file(
     textured: bool = True,
     csv: Path | None = None,
     told: Mapping[str, Any] | None = None,
-) -> tuple[str, TrackReport]:
-    """Render a tracker's file to `output`; return one line about it, and what became of its rows.
+) -> tuple[Outcome, TrackReport]:
+    """Render a tracker's file to `output`; return what became of it, and of its rows.
 
     Args:
         source: What a tracker wrote.

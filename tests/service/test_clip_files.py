@@ -39,8 +39,10 @@ def written(path: Path, **changes: Any) -> Path:
             ]
         },
         {"textures": True, "fps": 7},
+        {"form": "arkit", "quantize": False, "level": "high"},
+        {"tolerance": 0.5, "sparse": False},
     ],
-    ids=["facs", "paper", "life", "layers", "maps"],
+    ids=["facs", "paper", "life", "layers", "maps", "arkit", "rough"],
 )
 def test_a_clip_is_rendered_again_bit_for_bit(changes: dict[str, Any], tmp_path: Path) -> None:
     source = written(tmp_path / "a.json", **changes)
@@ -51,6 +53,15 @@ def test_a_clip_is_rendered_again_bit_for_bit(changes: dict[str, Any], tmp_path:
     assert again.read_bytes() == first.read_bytes()
     assert (tmp_path / "again.truth.csv").read_bytes() == (tmp_path / "a.truth.csv").read_bytes()
     assert "may make other bytes" not in result.output
+
+
+def test_figures_are_printed_as_json(tmp_path: Path) -> None:
+    source = written(tmp_path / "a.json", timeline=[{"time": 0.0, "facs": "12C+12D"}])
+    result = run("clip", source, "-o", tmp_path / "a.glb", "--json")
+    figures = json.loads(result.stdout)["clip"]
+    assert figures["frames"] == 3
+    assert figures["bytes"] == (tmp_path / "a.glb").stat().st_size
+    assert "twice in facs" in figures["warnings"][0]
 
 
 def test_of_another_engine_it_is_said_and_rendered(tmp_path: Path) -> None:
@@ -115,7 +126,12 @@ def test_folders_and_patterns_are_rendered_side_by_side(tmp_path: Path) -> None:
     assert sorted(line.split(":")[0].rsplit("/")[-1][0] for line in lines) == ["a", "b", "c", "d"]
     assert "d.json is not a JSON file" in result.stderr
     assert sorted(file.name for file in out.iterdir()) == ["a.glb", "b.glb", "c.glb"]
-    assert json.loads(result.stdout)[str(folder / "c.csv")]["rows"] == 3
+    told = json.loads(result.stdout)
+    assert set(told) == {str(folder / name) for name in ("a.json", "b.json", "c.csv")}
+    assert told[str(folder / "c.csv")]["rows"] == 3
+    for name, figures in told.items():
+        size = (out / Path(name).with_suffix(".glb").name).stat().st_size
+        assert figures["clip"]["bytes"] == size
     alone = tmp_path / "alone.glb"
     assert run("clip", folder / "b.json", "-o", alone, "--no-textures").exit_code == 0
     assert alone.read_bytes() == (out / "b.glb").read_bytes()
