@@ -16,7 +16,7 @@ SNAPSHOT_COUNT = 300
 SAMPLE_COUNT = 1000
 """About as many vertices say which shapes are needed; the rest move much like their neighbours."""
 SPARE_SHAPES = 16
-"""Shapes that are made ready beside twice as many as a sample of the vertices needs."""
+"""Shapes that are looked at beside twice as many as a sample of the vertices needs."""
 DROPPED, LEAST_DROPPED = 0.08, 1e-3
 """Deltas below this share of the tolerance are dropped from a shape; the second where the first
 leaves too large an error, which it may when shapes are many."""
@@ -72,31 +72,42 @@ def fit_basis(
     chosen = np.unique(np.linspace(0, len(motion) - 1, SNAPSHOT_COUNT).round().astype(np.int64))
     while True:
         basis, errors = _fit_to(motion, chosen, fine, check)
-        missed = np.setdiff1d(np.flatnonzero(errors > tolerance), chosen)
-        if missed.size == 0:
-            return basis
-        worst = missed[np.argsort(-errors[missed], kind="stable")]
-        chosen = np.union1d(chosen, worst[: SNAPSHOT_COUNT // 4])
+        missed = np.flatnonzero(errors > tolerance)
+        new = np.setdiff1d(missed, chosen)
+        if new.size == 0:
+            break
+        worst = new[np.argsort(-errors[new], kind="stable")[: SNAPSHOT_COUNT // 2]]
+        spread = new[:: max(1, 2 * new.size // SNAPSHOT_COUNT)]
+        chosen = np.union1d(chosen, np.union1d(worst, spread))
+    if missed.size:
+        basis, _ = _fit_to(motion, chosen, fine, check, spare=len(chosen))
+    return basis
 
 
 def _fit_to(
-    motion: Motion, chosen: IntArray, fine: _Fineness, check: Check | None
+    motion: Motion,
+    chosen: IntArray,
+    fine: _Fineness,
+    check: Check | None,
+    *,
+    spare: int = SPARE_SHAPES,
 ) -> tuple[MotionBasis, FloatArray]:
-    """Return the basis made from the `chosen` frames, and its error in every frame [mm]."""
+    """Return the basis made from the `chosen` frames, and its error in every frame [mm].
+
+    Shapes beyond twice those that a sample of the vertices needs, and `spare`, are not looked at:
+    where those do not suffice, frames are missing among the chosen.
+    """
     frames = motion[chosen]
     stride = max(1, frames.shape[1] // SAMPLE_COUNT)
     space = balanced_space(np.ascontiguousarray(frames[:, ::stride]), fine.tolerance, check=check)
     weights = space.own_weights
+    most = min(weights.shape[1], 2 * space.count + spare)
     if len(chosen) < len(motion):
         weights = np.concatenate([space.weights(part[:, ::stride]) for part in parts_of(motion)])
         weights[chosen] = space.own_weights
-    start, tolerance, every = space.count, fine.tolerance, weights.shape[1]
-    # More than twice what a sample of vertices needs is hardly ever looked at.
-    for most in (min(every, 2 * start + SPARE_SHAPES), every):
-        rounded = _rounded(space.shapes(frames, most), weights[:, :most], fine)
-        count, errors = fewest_shapes(motion, *rounded, tolerance, start=start, check=check)
-        if errors.max() <= tolerance:
-            break
+    rounded = _rounded(space.shapes(frames, most), weights[:, :most], fine)
+    start, tolerance = space.count, fine.tolerance
+    count, errors = fewest_shapes(motion, *rounded, tolerance, start=start, check=check)
     kept = rounded[0][:count].reshape(count, -1, 3)
     own = np.ascontiguousarray(rounded[1][:, :count])
     return MotionBasis(kept, own, float(errors.max())), errors
