@@ -29,6 +29,7 @@ from .keys import KeyRing
 from .metrics import CountRequests, Metrics
 from .settings import Settings
 from .tickets import Tickets
+from .uploads import Uploads
 from .version import version
 
 _LOG = structlog.get_logger("service")
@@ -84,9 +85,14 @@ def create_app(settings: Settings | None = None) -> FastAPI:
             allow_origins=list(settings.allowed_origins),
             allow_methods=["*"],
             allow_headers=["*"],
-            expose_headers=["ETag", "Location", "Retry-After"],
+            expose_headers=["ETag", "Location", "Repr-Digest", "Retry-After"],
         )
-    app.add_middleware(Guard, settings=settings, rate=rate, keys=keys, tickets=tickets)
+    uploads = Uploads(
+        settings.clips_folder, limit=settings.max_upload_bytes, most=settings.max_queued_clips
+    )
+    app.add_middleware(
+        Guard, settings=settings, rate=rate, keys=keys, tickets=tickets, uploads=uploads
+    )
     app.add_middleware(CountRequests, metrics=metrics)
     return app
 

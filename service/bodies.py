@@ -434,11 +434,11 @@ class KeyframeBody(Controls):
     )
 
 
-class NewClip(Body):
-    """A clip to render."""
+class ClipForm(Body):
+    """Who performs in a clip, and what its file is like, whatever is played."""
 
     rig: Name = "standard"
-    fps: Annotated[int, Field(ge=1, le=60)] = 30
+    fps: Annotated[int, Field(ge=1, le=60, description="Frames a second.")] = 30
     level: Literal["low", "medium", "high"] = Field(
         default="medium", description="Detail of the drawn skin and hair."
     )
@@ -459,6 +459,11 @@ class NewClip(Body):
     textures: StrictBool = Field(
         default=True, description="Whether the maps of skin and eyes are embedded."
     )
+
+
+class NewClip(ClipForm):
+    """A clip to render."""
+
     timeline: list[KeyframeBody]
     duration: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] | None = None
     start: Seconds = Field(

@@ -32,6 +32,7 @@ from engine import LETS_GO, SPEAKER
 from .client_commands import CommandStream, ended
 from .client_error import ServiceError, refused
 from .protocol import FRAME_VERSION, KIND_SURFACE, SUBPROTOCOL, SurfaceFrame, decode_frame
+from .whole_files import write_whole
 
 __all__ = ["DEFAULT_URL", "Client", "CommandStream", "Face", "ServiceError"]
 
@@ -44,6 +45,7 @@ _TIMEOUT_SECONDS = 120.0
 _CLIP_WAIT_SECONDS = 2.0
 _LARGEST_MESSAGE = 16_000_000
 _ON_ITS_WAY = 202
+_LINES = (".jsonl", ".ndjson")
 
 
 class Client:
@@ -153,6 +155,34 @@ class Client:
         path = f"/api/rigs/{quote(rig, safe='')}/expressions/{quote(facs, safe='')}.{form}{asked}"
         return self.call("GET", path).content
 
+    def save_track(
+        self,
+        track: str | Path,
+        path: str | Path,
+        *,
+        show: Callable[[float], None] | None = None,
+        **asked: Any,
+    ) -> dict[str, Any]:
+        """Have a tracker's file rendered, save its GLB file, and return its report.
+
+        Its `track` says what became of each row and column.
+
+        Args:
+            track: What the tracker wrote.
+            path: File to write.
+            show: Told the share of the work done.
+            asked: `gain=1.5`, `neutral="auto"`, `rig="amara"`, `fps=30`, as in the address of
+                `POST /api/clips`.
+
+        Raises:
+            ServiceError: If it cannot be read or rendered.
+            OSError: If a file cannot be read or written.
+        """
+        options = {name: _plain(value) for name, value in asked.items() if value is not None}
+        query = f"?{urlencode(options)}" if options else ""
+        row = self.call("POST", f"/api/clips{query}", file=Path(track)).json()
+        return self._finished(row, path, show)
+
     def json(self, method: str, path: str, body: object = None) -> Any:
         """Send a request and return the JSON of its answer, None if it has none.
 
@@ -162,17 +192,26 @@ class Client:
         answer = self.call(method, path, body)
         return answer.json() if answer.content else None
 
-    def call(self, method: str, path: str, body: object = None) -> httpx2.Response:
+    def call(
+        self, method: str, path: str, body: object = None, *, file: Path | None = None
+    ) -> httpx2.Response:
         """Send a request, again while it is put off, and return its answer.
+
+        Args:
+            method: "GET" and so on.
+            path: Below the service's address.
+            body: What is sent as JSON.
+            file: A tracker's file that is sent in its place, read as it goes.
 
         Raises:
             ServiceError: If it is refused, or there is no answer.
+            OSError: If the file cannot be read.
         """
         # By it a POST that is sent again is not done twice.
         once = {"Idempotency-Key": secrets.token_hex(16)} if method == "POST" else {}
         for turn in range(_TRIES):
             try:
-                answer = self._http.request(method, self.url + path, json=body, headers=once)
+                answer = self._sent(method, path, body, file, once)
             except (httpx2.TransportError, httpx2.InvalidURL) as error:
                 raise self._unreachable(error) from error
             put_off = answer.status_code in (429, 503) and path != "/api/ready"
@@ -183,6 +222,16 @@ class Client:
         if answer.is_error:
             raise refused(answer.status_code, answer.content)
         return answer
+
+    def _sent(
+        self, method: str, path: str, body: object, file: Path | None, once: Mapping[str, str]
+    ) -> httpx2.Response:
+        if file is None:
+            return self._http.request(method, self.url + path, json=body, headers=once)
+        kind = "application/jsonl" if file.suffix.lower() in _LINES else "text/csv"
+        headers = {**once, "Content-Type": kind}
+        with file.open("rb") as content:
+            return self._http.request(method, self.url + path, content=content, headers=headers)
 
     def _finished(
         self, row: Mapping[str, Any], path: str | Path, show: Callable[[float], None] | None = None
@@ -196,7 +245,7 @@ class Client:
         if row["status"] != "done":
             message = row.get("message") or f"the clip is {row['status']}"
             raise ServiceError(200, f"clip_{row['status']}", message, [])
-        Path(path).write_bytes(self.call("GET", f"{address}.glb").content)
+        write_whole(Path(path), self.call("GET", f"{address}.glb").content)
         report: dict[str, Any] = row["report"]
         return report
 
@@ -402,6 +451,11 @@ class Face:
     @property
     def _path(self) -> str:
         return f"/api/sessions/{self.session}"
+
+
+def _plain(value: object) -> object:
+    """Return a value as an address holds it."""
+    return str(value).lower() if isinstance(value, bool) else value
 
 
 def _pause(retry_after: str) -> float:

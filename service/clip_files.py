@@ -18,6 +18,7 @@ from .clip_sheet import draw_clip
 from .playing_again import is_clip, render_again
 from .rendering import ClipRefused, Show, render_by_service, render_file, truth_of
 from .track_rendering import SUFFIXES, is_track, render_track_file
+from .track_sending import render_track_by_service
 
 _TIMELINE = ".json"
 _TRUTH = ".truth.csv"
@@ -148,11 +149,24 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
 
 
 def _by_service(source: Path, output: Path, wanted: Wanted, show: Show) -> Rendered:
-    if is_track(source) or is_clip(source):
-        what = "A tracker's file" if is_track(source) else "A clip"
-        raise ClipRefused(f"{what} is rendered here: leave --url out.")
+    if is_clip(source):
+        raise ClipRefused("A clip is rendered here: leave --url out.")
     if wanted.csv or wanted.png:
         raise ClipRefused("Ground truth and pictures are made here: leave --url out.")
+    if is_track(source):
+        made, report = render_track_by_service(
+            source,
+            output,
+            url=wanted.url,
+            key=wanted.key,
+            options=wanted.options,
+            rig=wanted.rig,
+            fps=wanted.fps,
+            show=show,
+            textured=wanted.textured,
+            told=wanted.told,
+        )
+        return Rendered(made.line, made.figures, report)
     made = render_by_service(
         source,
         output,

@@ -1,11 +1,12 @@
-"""Clips: asked for, queued, rendered, stored; a table of jobs and no broker."""
+"""Clips: asked for, queued, rendered, stored, forgotten; a table of jobs and no broker."""
 
 from __future__ import annotations
 
 import asyncio
 import copy
 import secrets
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,30 +17,28 @@ from pydantic import ValidationError
 from engine import EngineError, Rig, Timeline
 
 from .access import EVERYTHING, Access
-from .bodies import NewClip
+from .bodies import ModelChoice, NewClip
+from .clip_folder import GIVEN, TRACK, ClipFolder
+from .clip_jobs import ClipJob
 from .commands import clip_timeline, how_told, live_model
 from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
 from .explaining import explain
 from .idle import seed_of, with_life
 from .render_process import Order
-from .renderer import Renderer
+from .renderer import Renderer, RenderingEnded
 from .rigs import Rigs
 from .store import ClipRow, Store
+from .track_file import TrackFile
+from .tracks import TrackClip, options_of
+from .uploads import Upload
 
 _LOG = structlog.get_logger("clips")
-_FINISHED = ("done", "failed", "cancelled")
-
-
-@dataclass(eq=False)
-class _Job:
-    """A clip on its way."""
-
-    task: asyncio.Task[None] | None = None
-    progress: float = 0.0
-
-    def show(self, share: float) -> None:
-        """Take the share of the work that is done."""
-        self.progress = share
+FINISHED = ("done", "failed", "cancelled")
+"""States of a clip that has ended."""
+DAY_SECONDS = 86_400.0
+_USUAL = ModelChoice()
+_SWEEP_SECONDS = 60.0
+"""After which it is looked again for clips that were kept for long enough."""
 
 
 class Clips:
@@ -59,20 +58,24 @@ class Clips:
         queue_limit: int,
         max_seconds: float,
         max_keyframes: int,
+        kept_seconds: float,
         on_end: Callable[[str], None],
     ) -> None:
         self._access = EVERYTHING
         self._store = store
         self._rigs = rigs
         self._renderer = Renderer()
-        self._folder = folder
+        self._files = ClipFolder(folder)
         self._limit = limit
         self._queue_limit = queue_limit
         self._max_seconds = max_seconds
         self._max_keyframes = max_keyframes
+        self._kept_seconds = kept_seconds
         self._on_end = on_end
         self._free = asyncio.Semaphore(processes)
-        self._jobs: dict[str, _Job] = {}
+        self._reading = asyncio.Semaphore(1)
+        self._jobs: dict[str, ClipJob] = {}
+        self._sweeping: list[asyncio.Task[None]] = []
 
     def seen_by(self, access: Access, rigs: Rigs) -> Clips:
         """Return the same clips as somebody sees them, and the rigs as they see those."""
@@ -80,25 +83,31 @@ class Clips:
         seen._access, seen._rigs = access, rigs
         return seen
 
+    def clean(self) -> None:
+        """Remove what a killed service was in the middle of writing; nobody sends files yet."""
+        unfinished = {row.id for row in self._store.clips() if row.status not in FINISHED}
+        self._files.remove_strays(unfinished)
+
     def start(self) -> None:
-        """Take up again what a stopped service left behind."""
+        """Take up again what a stopped service left behind, and forget what is old from now on."""
         for row in self._store.clips():
-            if row.status not in _FINISHED:
+            if row.status not in FINISHED:
                 try:
-                    request = NewClip.model_validate(row.request)
+                    request = _request_of(row)
                 except ValidationError as error:
                     why = explain(error.errors(), row.request)
                     self._fail(row.id, f"this version cannot read it: {why}")
                 else:
                     self._launch(row.id, request)
+        self._sweeping.append(asyncio.create_task(self._sweep(), name="old clips"))
 
     async def stop(self) -> None:
         """Stop rendering; what is not done is taken up at the next start."""
-        jobs = list(self._jobs.values())
-        for job in jobs:
-            if job.task is not None:
-                job.task.cancel()
-        await asyncio.gather(*(job.task for job in jobs if job.task), return_exceptions=True)
+        tasks = [job.task for job in self._jobs.values() if job.task is not None]
+        tasks += self._sweeping
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
         await self._renderer.stop()
 
     async def submit(self, clip: NewClip) -> ClipRow:
@@ -113,23 +122,30 @@ class Clips:
         self._access.check_whole()
         rig = await self._rigs.get(clip.rig)
         timeline, _ = self._checked(clip, rig)
-        if len(self._jobs) >= self._queue_limit:
-            raise Busy("queue_full", f"{self._queue_limit} clips are waiting", retry_after=10)
-        if self._store.clip_count() >= self._limit:
-            message = f"{self._limit} clips are kept; delete one first"
-            raise Busy("too_many_clips", message, retry_after=60)
-        if self._access.allowance is not None:
-            self._access.allowance.take_clip(timeline.duration)
-        request = clip.model_copy(update={"rig": rig.id, "duration": timeline.duration})
-        row = self._store.add_clip(
-            secrets.token_hex(16),
-            rig=rig.id,
-            fps=clip.fps,
-            request=request.model_dump(mode="json", exclude_unset=True),
-            made_by=self._access.maker,
-        )
-        self._launch(row.id, clip)
-        return row
+        self._check_room()
+        return self._queue(clip, rig, timeline.duration)
+
+    async def submit_track(self, clip: TrackClip, upload: Upload) -> ClipRow:
+        """Read a tracker's file to its end and queue the clip of it; the file is kept until then.
+
+        Raises:
+            Unprocessable: If it cannot be read, or a clip that is too long is asked for.
+            Busy: If the queue or the store is full.
+            Forbidden: If it is a ticket that asks.
+            QuotaExceeded: If the key asked for as much as it may.
+        """
+        self._access.check_whole()
+        rig = await self._rigs.get(clip.rig)
+        options = options_of(clip, self._max_seconds)
+        self._check_room()
+        try:
+            async with self._reading:  # Not behind clips that are being rendered.
+                report = await self._renderer.read(TrackFile(upload.path, options))
+        except RenderingEnded as error:
+            _LOG.exception("a tracker's file could not be read", bytes=upload.size)
+            raise Busy("not_read", "what read the file ended early; send it again") from error
+        self._check_room()
+        return self._queue(clip, rig, report["track"]["duration"], report, upload)
 
     async def wait(self, clip: str, seconds: float) -> ClipRow:
         """Wait for a clip to end, `seconds` at most, and return how it stands.
@@ -147,17 +163,23 @@ class Clips:
         """Return a clip.
 
         Raises:
-            NotFound: If there is none of that id, or it is not theirs.
+            NotFound: If there is none of that id, or no longer, or it is not theirs.
         """
         row = self._store.clip(clip)
-        if row is None or not self._access.sees(row.made_by):
-            raise NotFound("unknown_clip", f"there is no clip {clip!r}")
+        if row is None or not self._access.sees(row.made_by) or self._is_old(row):
+            days = self._kept_seconds / DAY_SECONDS
+            message = f"there is no clip {clip!r}; one that has ended is kept for {days:g} days"
+            raise NotFound("unknown_clip", message)
         return row
 
     def rows(self) -> list[ClipRow]:
         """Return every clip that is theirs, oldest first."""
         rows = self._store.clips(self._access.key)
-        return [row for row in rows if self._access.sees(row.made_by)]
+        return [row for row in rows if self._access.sees(row.made_by) and not self._is_old(row)]
+
+    def job(self, clip: str) -> ClipJob | None:
+        """Return the work on a clip, None if it has ended or not begun."""
+        return self._jobs.get(clip)
 
     def describe(self, row: ClipRow) -> dict[str, object]:
         """Return what the API says of a clip."""
@@ -172,10 +194,16 @@ class Clips:
             "report": row.report,
             "created": row.created,
             "finished": row.finished,
+            "expires": None if row.finished is None else row.finished + self._kept_seconds,
         }
         if row.message:
             line["message"] = row.message
         return line
+
+    def outline(self, row: ClipRow) -> dict[str, object]:
+        """Return what a list says of a clip: all but what became of a tracker's rows."""
+        report = {name: value for name, value in row.report.items() if name != "track"}
+        return {**self.describe(row), "report": report}
 
     def file(self, clip: str, suffix: str) -> Path:
         """Return the path of a finished clip's file.
@@ -187,7 +215,7 @@ class Clips:
         row = self.row(clip)
         if row.status != "done":
             raise Conflict("clip_not_done", f"the clip is {row.status}; only a done one has files")
-        path = self._path(clip, suffix)
+        path = self._files.path(clip, suffix)
         if not path.is_file():
             raise NotFound("file_gone", f"the file of clip {clip!r} is no longer there")
         return path
@@ -199,10 +227,8 @@ class Clips:
             NotFound: If there is none of that id.
         """
         row = self.row(clip)
-        if row.status in _FINISHED:
-            self._store.remove_clip(clip)
-            for suffix in ("glb", "csv"):
-                self._path(clip, suffix).unlink(missing_ok=True)
+        if row.status in FINISHED:
+            self._forget(clip)
             return
         self._store.keep_clip(clip, status="cancelled", message="cancelled by a client")
         self._on_end("cancelled")
@@ -210,16 +236,88 @@ class Clips:
         if job is not None and job.task is not None:
             job.task.cancel()
             await asyncio.wait({job.task}, timeout=5.0)
+        self._files.remove(clip)
 
-    def _launch(self, clip: str, request: NewClip) -> None:
-        job = self._jobs[clip] = _Job()
+    def _check_room(self) -> None:
+        """Take no more clips than are rendered soon, and kept.
+
+        Raises:
+            Busy: If there are as many.
+        """
+        if len(self._jobs) >= self._queue_limit:
+            raise Busy("queue_full", f"{self._queue_limit} clips are waiting", retry_after=10)
+        if self._store.clip_count() >= self._limit:
+            message = f"{self._limit} clips are kept; delete one first"
+            raise Busy("too_many_clips", message, retry_after=60)
+
+    def _queue(
+        self,
+        clip: NewClip | TrackClip,
+        rig: Rig,
+        duration: float,
+        report: Mapping[str, Any] | None = None,
+        upload: Upload | None = None,
+    ) -> ClipRow:
+        """Keep what was asked for, and begin with it."""
+        if self._access.allowance is not None:
+            self._access.allowance.take_clip(duration)
+        request = clip.model_copy(update={"rig": rig.id}).model_dump(
+            mode="json", exclude_unset=True
+        )
+        name = secrets.token_hex(16)
+        if upload is not None:
+            self._files.keep_track(name, upload.path)
+        try:
+            row = self._store.add_clip(
+                name,
+                rig=rig.id,
+                fps=clip.fps,
+                request={**request, "duration": duration},
+                report=report,
+                made_by=self._access.maker,
+            )
+        except BaseException:
+            self._files.remove(name)
+            raise
+        self._launch(row.id, clip)
+        return row
+
+    def _is_old(self, row: ClipRow) -> bool:
+        """Return whether a clip has been kept for long enough."""
+        return row.finished is not None and row.finished < time.time() - self._kept_seconds
+
+    def _forget(self, clip: str) -> None:
+        """Forget a clip that has ended; one whose files are gone is found again after a kill."""
+        self._files.remove(clip)
+        self._store.remove_clip(clip)
+
+    async def _sweep(self) -> None:
+        """Forget clips once they are old."""
+        while True:
+            try:
+                before = time.time() - self._kept_seconds
+                for clip in self._store.ended_clips(before):
+                    self._forget(clip)
+                    await asyncio.sleep(0)
+            except Exception:
+                _LOG.exception("old clips could not be forgotten")
+            await asyncio.sleep(_SWEEP_SECONDS)
+
+    def _launch(self, clip: str, request: NewClip | TrackClip) -> None:
+        job = self._jobs[clip] = ClipJob()
         job.task = asyncio.create_task(self._run(clip, request, job), name=f"clip {clip}")
-        job.task.add_done_callback(lambda _: self._jobs.pop(clip, None))
 
-    async def _run(self, clip: str, request: NewClip, job: _Job) -> None:
+        def ended(_task: object) -> None:
+            self._jobs.pop(clip, None)
+            job.tell()
+
+        job.task.add_done_callback(ended)
+
+    async def _run(self, clip: str, request: NewClip | TrackClip, job: ClipJob) -> None:
         try:
             async with self._free:
                 self._store.keep_clip(clip, status="running")
+                job.tell()
                 report = await self._render(clip, request, job)
         except (EngineError, Refused) as error:
             self._fail(clip, str(error))
@@ -228,36 +326,54 @@ class Clips:
             self._fail(clip, "the clip could not be rendered; the service's log says why")
         else:
             self._store.keep_clip(clip, status="done", report=report)
+            self._files.remove(clip, TRACK)
             self._on_end("done")
 
-    async def _render(self, clip: str, request: NewClip, job: _Job) -> Mapping[str, Any]:
+    async def _render(
+        self, clip: str, request: NewClip | TrackClip, job: ClipJob
+    ) -> Mapping[str, Any]:
         rig = await self._rigs.get(request.rig)
         root, steps = await self._rigs.made_from(request.rig)
-        timeline, warnings = self._checked(request, rig)
+        played = self._played(clip, request, rig)
         textures = await self._rigs.textures(rig) if request.textures else {}
-        await asyncio.to_thread(self._folder.mkdir, parents=True, exist_ok=True)
+        await asyncio.to_thread(self._files.folder.mkdir, parents=True, exist_ok=True)
         order = Order(
             root=root,
             steps=steps,
-            timeline=timeline,
+            timeline=played.timeline,
             fps=request.fps,
-            model=live_model(request.model, rig),
-            start=request.start,
+            model=live_model(played.model, rig),
+            start=played.start,
             level=request.level,
             textures=textures,
-            glb=self._path(clip, "glb"),
-            csv=self._path(clip, "csv"),
-            seed=seed_of(request),
+            glb=self._files.path(clip, GIVEN[0]),
+            csv=self._files.path(clip, GIVEN[1]),
+            seed=played.seed,
             **how_told(request),
         )
         figures = await self._renderer.render(order, job.show)
         seconds = figures["simulation_seconds"] + figures["writing_seconds"]
+        notes = figures["track"]["notes"] if "track" in figures else []
         return {
             **figures,
-            "times_real_time": round(timeline.duration / max(seconds, 1e-3), 2),
-            "scales": sorted({keyframe.scale for keyframe in request.timeline}),
-            "warnings": warnings,
+            "times_real_time": round((figures["duration"] + played.start) / max(seconds, 1e-3), 2),
+            "scales": played.scales,
+            "warnings": [*played.warnings, *notes],
         }
+
+    def _played(self, clip: str, request: NewClip | TrackClip, rig: Rig) -> _Played:
+        """Return what a clip plays.
+
+        Raises:
+            Unprocessable: If it cannot be played, or is too long.
+        """
+        if isinstance(request, TrackClip):
+            options = options_of(request, self._max_seconds)
+            return _Played(TrackFile(self._files.path(clip, TRACK), options))
+        timeline, warnings = self._checked(request, rig)
+        scales = sorted({keyframe.scale for keyframe in request.timeline})
+        seed = seed_of(request)
+        return _Played(timeline, request.model, request.start, seed, scales, warnings)
 
     def _checked(self, clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
         if len(clip.timeline) > self._max_keyframes:
@@ -273,7 +389,30 @@ class Clips:
 
     def _fail(self, clip: str, message: str) -> None:
         self._store.keep_clip(clip, status="failed", message=message)
+        self._files.remove(clip)
         self._on_end("failed")
 
-    def _path(self, clip: str, suffix: str) -> Path:
-        return self._folder / f"{clip}.{suffix}"
+
+@dataclass(frozen=True)
+class _Played:
+    """What a clip plays: by which physics, from when on, by which seed, and what is said of it."""
+
+    timeline: Timeline | TrackFile
+    model: ModelChoice = _USUAL
+    start: float = 0.0
+    seed: int | None = None
+    scales: Sequence[str] = ()
+    warnings: Sequence[str] = ()
+
+
+def _request_of(row: ClipRow) -> NewClip | TrackClip:
+    """Return what was asked for.
+
+    Raises:
+        ValidationError: If it was another version that was asked.
+    """
+    if "timeline" in row.request:
+        return NewClip.model_validate(row.request)
+    # How long it is was read of its file, and is kept for what its key may take.
+    asked = {name: value for name, value in row.request.items() if name != "duration"}
+    return TrackClip.model_validate(asked)

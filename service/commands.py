@@ -10,6 +10,7 @@ from typing import Any
 from engine import EngineError, Keyframe, Model, Rig, Timeline
 
 from .bodies import (
+    ClipForm,
     Controls,
     EmotionCommand,
     KeyframeBody,
@@ -127,7 +128,7 @@ def live_model(choice: ModelChoice, rig: Rig) -> Model:
     return replace(model, integrator="verlet")
 
 
-def how_told(clip: NewClip) -> dict[str, Any]:
+def how_told(clip: ClipForm) -> dict[str, Any]:
     """Return how a clip's file is to tell its motion."""
     return clip.model_dump(include={"form", "tolerance", "quantize", "sparse"})
 

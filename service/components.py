@@ -18,7 +18,7 @@ from engine import Timeline, warm_kernels, warm_posing
 
 from .access import Access
 from .bodies import ModelChoice
-from .clips import Clips
+from .clips import DAY_SECONDS, Clips
 from .commands import live_model
 from .embedded import EmbeddedRunner
 from .expressions import Expressions
@@ -106,12 +106,13 @@ class Components:
         clips = Clips(
             store,
             rigs,
-            folder=settings.data_dir / "clips",
+            folder=settings.clips_folder,
             processes=settings.render_processes,
             limit=settings.max_clips,
             queue_limit=settings.max_queued_clips,
             max_seconds=settings.max_clip_seconds,
             max_keyframes=settings.max_keyframes,
+            kept_seconds=settings.clip_days * DAY_SECONDS,
             on_end=lambda status: metrics.clips.labels(status).inc(),
         )
         expressions = Expressions(
@@ -148,6 +149,7 @@ class Components:
 
     def start(self) -> None:
         """Start the threads and tasks, and warm up beside them."""
+        self.clips.clean()
         self.runner.start()
         self.loop_delay.start()
         self.sessions.start()

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import time
 from collections import OrderedDict
+from collections.abc import Callable
 
 from starlette.datastructures import Headers, QueryParams
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -20,6 +21,7 @@ from .keys import KeyRing
 from .settings import Settings
 from .tickets import PREFIX as TICKET
 from .tickets import Tickets, check_reach
+from .uploads import SenderGone, Upload, Uploads, is_upload
 
 # A browser cannot set headers on a socket: it offers its key or ticket as a second subprotocol.
 KEY_SUBPROTOCOL = "risorius.key."
@@ -65,7 +67,7 @@ class Guard:
     """The middleware; everything behind it may trust host, origin, access and body size.
 
     It leaves who asks in the scope: `risorius.client`, and `risorius.access`, by which the parts of
-    the service show each caller what is theirs.
+    the service show each caller what is theirs; and `risorius.upload`, a body that is on disk.
     """
 
     def __init__(
@@ -76,12 +78,14 @@ class Guard:
         rate: RateLimit,
         keys: KeyRing,
         tickets: Tickets,
+        uploads: Uploads,
     ) -> None:
         self.app = app
         self.settings = settings
         self.rate = rate
         self.keys = keys
         self.tickets = tickets
+        self.uploads = uploads
         hosts = [*_LOOPBACK, *settings.allowed_hosts]
         if settings.host not in _WILDCARD:
             hosts.append(settings.host)
@@ -93,14 +97,24 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
+        upload: Upload | None = None
         try:
             self._admit(scope)
-            if scope["type"] == "http":
+            if scope["type"] == "http" and is_upload(scope):
+                upload = await self.uploads.take_in(scope, receive, _payment(scope))
+                scope["risorius.upload"], receive = upload, _replay(b"", receive)
+            elif scope["type"] == "http":
                 receive = await self._read_body(scope, receive)
         except Refused as refused:
             await _turn_away(refused, scope, receive, send)
             return
-        await self.app(scope, receive, send)
+        except SenderGone:
+            return
+        try:
+            await self.app(scope, receive, send)
+        finally:
+            if upload is not None:
+                await self.uploads.let_go(upload)
 
     def _admit(self, scope: Scope) -> None:
         headers = Headers(scope=scope)
@@ -201,22 +215,30 @@ class Guard:
         length = Headers(scope=scope).get("content-length", "0")
         if not length.isdecimal() or len(length) > 18 or int(length) > limit:
             raise too_large
-        access: Access = scope["risorius.access"]
-        if access.allowance is not None:
-            access.allowance.take_upload(int(length))
+        pay = _payment(scope)
+        pay(int(length))
         body = bytearray()
         while True:
             message = await receive()
             if message["type"] != "http.request":
-                break
+                raise SenderGone  # Half of a body may read as a whole one.
             body += message.get("body", b"")
             if len(body) > limit:
                 raise too_large
             if not message.get("more_body", False):
                 break
-        if access.allowance is not None:
-            access.allowance.take_upload(max(0, len(body) - int(length)))
+        pay(max(0, len(body) - int(length)))
         return _replay(bytes(body), receive)
+
+
+def _payment(scope: Scope) -> Callable[[int], None]:
+    """Return what counts the bytes of a body for whoever sends it."""
+    access: Access = scope["risorius.access"]
+    return _free if access.allowance is None else access.allowance.take_upload
+
+
+def _free(_size: int) -> None:
+    """Count nothing: who needs no key has no quota."""
 
 
 def _replay(body: bytes, receive: Receive) -> Receive:

@@ -11,6 +11,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from .errors import error_body, json_response
+from .uploads import Upload
 
 _KEY_LENGTH_LIMIT = 255
 _ANSWERS_KEPT = 1024
@@ -127,5 +128,7 @@ class Idempotency:
 def _fingerprint(scope: Scope, request: Message) -> str:
     digest = hashlib.sha256(scope.get("query_string", b""))
     digest.update(b"\0" + Headers(scope=scope).get("content-type", "").encode("latin-1"))
-    digest.update(b"\0" + bytes(request.get("body", b"")))
+    upload: Upload | None = scope.get("risorius.upload")
+    body = bytes(request.get("body", b"")) if upload is None else upload.digest.encode()
+    digest.update(b"\0" + body)
     return digest.hexdigest()

@@ -1,11 +1,13 @@
 """A process that renders clips, one after another, with an interpreter of its own.
 
 It reads orders from standard input and writes a line of JSON for each news of them: `progress`, 0
-to 1, then `done` with its figures, or `refused` with a sentence. It ends with its service.
+to 1, then `done` with its figures, or `refused` with a sentence and the `error`'s name. A tracker's
+file alone is an order to read it. It ends with its service.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import pickle
@@ -21,12 +23,15 @@ from engine import EngineError, Model, Rig, Timeline, clip_file, record
 
 from .apart import orders_and_answers
 from .deriving import Steps, made_from
-from .errors import Refused
+from .errors import Refused, refused_by_engine
 from .ground_truth import ground_truth_csv
 from .priority import stand_back
+from .track_file import TrackFile
+from .whole_files import write_whole
 
 SIMULATION_SHARE = 0.2
 """Share of a clip's work that is simulation; the rest is writing its file."""
+_LONGEST_SENTENCE = 2000
 _NEWS = 0.01
 """Progress after which the service is told again."""
 
@@ -38,7 +43,7 @@ class Order:
     Attributes:
         root: Named rig that its own comes from.
         steps: What was changed in it, step by step.
-        timeline: What to play.
+        timeline: What to play, or the tracker's file that says it.
         fps: Frames a second.
         model: Forms of the physics.
         start: Seconds of the timeline to leave out.
@@ -52,7 +57,7 @@ class Order:
 
     root: str
     steps: Steps
-    timeline: Timeline
+    timeline: Timeline | TrackFile
     fps: int
     model: Model
     start: float
@@ -79,10 +84,11 @@ def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
         OSError: If it cannot be written.
     """
     rig = _rig(order.root, json.dumps(list(order.steps)))
+    timeline, told = _performed(order.timeline, rig)
     started = time.perf_counter()
     clip = record(
         rig,
-        order.timeline,
+        timeline,
         fps=order.fps,
         model=order.model,
         progress=lambda share: show(SIMULATION_SHARE * share),
@@ -100,39 +106,40 @@ def carry_out(order: Order, show: Callable[[float], None]) -> Mapping[str, Any]:
         seed=order.seed,
         progress=lambda share: show(SIMULATION_SHARE + (1.0 - SIMULATION_SHARE) * share),
     )
-    _write(order.glb, file.data)
+    files = {"glb": (order.glb, file.data)}
     if order.csv is not None:
-        _write(order.csv, ground_truth_csv(drawn, order.timeline, order.start).encode())
+        truth = ground_truth_csv(drawn, timeline, order.start).encode()
+        files["csv"] = order.csv, truth
+    for path, content in files.values():
+        write_whole(path, content)
     return {
         "frames": len(clip),
-        "duration": clip.duration if order.start else order.timeline.duration,
+        "duration": clip.duration if order.start else timeline.duration,
         "bytes": len(file.data),
         **file.told,
+        "sha256": {name: _sha256(content) for name, (_, content) in files.items()},
         "simulation_seconds": round(simulated - started, 3),
         "fit_seconds": round(file.fit_seconds, 3),
         "write_seconds": round(file.write_seconds, 3),
         "writing_seconds": round(time.perf_counter() - simulated, 3),
+        **told,
     }
+
+
+def _performed(timeline: Timeline | TrackFile, rig: Rig) -> tuple[Timeline, Mapping[str, Any]]:
+    """Return what is played, and what is told of where it comes from."""
+    if isinstance(timeline, Timeline):
+        return timeline, {}
+    return timeline.performed(rig)
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
 
 
 @lru_cache(maxsize=4)
 def _rig(root: str, steps: str) -> Rig:
     return made_from(root, json.loads(steps))
-
-
-def _write(path: Path, data: bytes) -> None:
-    """Write a file that is there as a whole or not at all, also if this process is killed."""
-    part = part_of(path, os.getpid())
-    try:
-        part.write_bytes(data)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def part_of(path: Path, process: int) -> Path:
-    """Return where a process writes what becomes the file at `path` once it is whole."""
-    return path.with_name(f"{path.name}.{process}")
 
 
 class _News:
@@ -155,6 +162,10 @@ class _News:
             self._shown = share
             self.say(progress=round(share, 4))
 
+    def refuse(self, refused: Refused) -> None:
+        """Tell why nothing comes of it; what a file says of itself may be long."""
+        self.say(refused=refused.message[:_LONGEST_SENTENCE], error=refused.error)
+
     def say(self, **news: object) -> None:
         """Write a line."""
         self._out.write(json.dumps(news).encode() + b"\n")
@@ -168,14 +179,22 @@ def main() -> None:
     news = _News(answers)
     while True:
         try:
-            order: Order = pickle.load(orders)
+            order: Order | TrackFile = pickle.load(orders)
         except EOFError:
             return
         news.begin()
         try:
-            news.say(done=carry_out(order, news.progress))
-        except (EngineError, Refused) as error:
-            news.say(refused=str(error))
+            news.say(done=_done(order, news))
+        except EngineError as error:
+            news.refuse(refused_by_engine(error))
+        except Refused as refused:
+            news.refuse(refused)
+
+
+def _done(order: Order | TrackFile, news: _News) -> Mapping[str, Any]:
+    if isinstance(order, TrackFile):
+        return order.told()
+    return carry_out(order, news.progress)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Clips rendered in processes of their own, which live faces do not feel.
+"""Clips rendered, and trackers' files read, in processes that live faces do not feel.
 
 In a thread each step of a clip would ask for the interpreter that live ticks and the event loop
 need, and a thread that stands back may hold it while it waits for a core.
@@ -11,16 +11,21 @@ import json
 import pickle
 import sys
 from asyncio.subprocess import PIPE, Process
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from .apart import environment
 from .errors import Unprocessable
-from .render_process import Order, part_of
+from .render_process import Order
+from .track_file import LONGEST_REPORT, TrackFile
+from .whole_files import part_of
 
 _KEPT_SECONDS = 60.0
 """For which a process waits for its next clip: it takes a second to start, and 150 MB."""
+_LONGEST_LINE = 2 * LONGEST_REPORT
+"""Bytes of one answer: a report, and what else there is to say of a clip."""
 _MODULE = f"{__package__}.render_process"
 
 
@@ -45,15 +50,31 @@ class Renderer:
             Unprocessable: If it cannot be played.
             RenderingEnded: If the process ended, for want of memory perhaps.
         """
+        files = [path for path in (order.glb, order.csv) if path is not None]
+        return await self._carried_out(order, files, progress)
+
+    async def read(self, file: TrackFile) -> Mapping[str, Any]:
+        """Read a tracker's file to its end and return what became of it.
+
+        Raises:
+            Unprocessable: If it cannot be read.
+            RenderingEnded: If the process ended, for want of memory perhaps.
+        """
+        return await self._carried_out(file, (), lambda share: None)
+
+    async def _carried_out(
+        self, order: Order | TrackFile, files: Sequence[Path], progress: Callable[[float], None]
+    ) -> Mapping[str, Any]:
+        """Have a process do it, which ends if it does not come to an end of it."""
         process = await self._process()
         try:
-            figures = await _carried_out(process, order, progress)
+            figures = await _answered(process, order, progress)
         except Unprocessable:
             self._keep(process)
             raise
         except BaseException:
             await _end(process)
-            for path in filter(None, (order.glb, order.csv)):  # It had no time to: it was killed.
+            for path in files:  # It had no time to do so where it was killed.
                 part_of(path, process.pid).unlink(missing_ok=True)
             raise
         self._keep(process)
@@ -78,6 +99,7 @@ class Renderer:
             env=environment(),
             stdin=PIPE,
             stdout=PIPE,
+            limit=_LONGEST_LINE,
         )
 
     def _keep(self, process: Process) -> None:
@@ -91,8 +113,8 @@ class Renderer:
         process.stdin.close()
 
 
-async def _carried_out(
-    process: Process, order: Order, progress: Callable[[float], None]
+async def _answered(
+    process: Process, order: Order | TrackFile, progress: Callable[[float], None]
 ) -> Mapping[str, Any]:
     assert process.stdin is not None
     assert process.stdout is not None
@@ -105,7 +127,7 @@ async def _carried_out(
             figures: Mapping[str, Any] = news["done"]
             return figures
         if "refused" in news:
-            raise Unprocessable("cannot_be_rendered", news["refused"])
+            raise Unprocessable(news["error"], news["refused"])
         progress(news["progress"])
     raise RenderingEnded(f"the process that rendered it ended with {await process.wait()}")
 

@@ -99,6 +99,9 @@ class Settings(BaseSettings):
     max_body_bytes: int = Field(
         default=4_000_000, ge=1024, description="Largest request body accepted, in bytes."
     )
+    max_upload_bytes: int = Field(
+        default=256_000_000, ge=1024, description="Largest tracker's file accepted, in bytes."
+    )
     max_message_bytes: int = Field(
         default=65_536, ge=1024, description="Largest WebSocket message accepted, in bytes."
     )
@@ -119,6 +122,12 @@ class Settings(BaseSettings):
     )
     max_keyframes: int = Field(
         default=10_000, ge=1, description="Most keyframes accepted in one clip."
+    )
+    clip_days: float = Field(
+        default=30.0,
+        gt=0,
+        allow_inf_nan=False,
+        description="Days that a clip is kept once it has ended.",
     )
     max_queued_analyses: int = Field(
         default=16, ge=1, description="Most analyses and inverses waiting or being computed."
@@ -168,3 +177,8 @@ class Settings(BaseSettings):
     def database(self) -> str:
         """The URL of the database."""
         return self.database_url or f"sqlite:///{self.data_dir / 'risorius.sqlite3'}"
+
+    @property
+    def clips_folder(self) -> Path:
+        """Where the files of clips are, and trackers' files until their clips are done."""
+        return self.data_dir / "clips"

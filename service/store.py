@@ -397,9 +397,16 @@ class Store:
     # Clips.
 
     def add_clip(
-        self, clip: str, *, rig: str, fps: int, request: Mapping[str, Any], made_by: str = ""
+        self,
+        clip: str,
+        *,
+        rig: str,
+        fps: int,
+        request: Mapping[str, Any],
+        report: Mapping[str, Any] | None = None,
+        made_by: str = "",
     ) -> ClipRow:
-        """Keep a clip of a key that waits to be rendered."""
+        """Keep a clip of a key that waits to be rendered, and what is known of it already."""
         row = ClipRow(
             id=clip,
             rig=rig,
@@ -407,7 +414,7 @@ class Store:
             request=dict(request),
             status="queued",
             message="",
-            report={},
+            report=dict(report or {}),
             created=time.time(),
             made_by=made_by,
         )
@@ -436,6 +443,11 @@ class Store:
         """Forget a clip."""
         with self._session.begin() as session:
             session.execute(delete(ClipRow).where(ClipRow.id == clip))
+
+    def ended_clips(self, before: float) -> Sequence[str]:
+        """Return the ids of the clips that ended before a time [s since 1970]."""
+        with self._session() as session:
+            return session.scalars(select(ClipRow.id).where(ClipRow.finished < before)).all()
 
     def clip(self, clip: str) -> ClipRow | None:
         """Return the clip of that id."""

@@ -10,7 +10,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from engine import (
-    NEUTRAL_QUANTILE,
     EngineError,
     Track,
     TrackOptions,
@@ -24,6 +23,7 @@ from .bodies import ModelChoice
 from .commands import live_model
 from .render_process import Order
 from .rendering import ClipRefused, Outcome, Show, check_folder, maps_of, written
+from .tracks import read_neutral
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".jsonl", ".ndjson")
 """Of the files that trackers write."""
@@ -39,22 +39,15 @@ def is_track(source: Path) -> bool:
 
 
 def neutral_of(text: str) -> float | tuple[int, int] | None:
-    """Return what "auto", "0.1" or "0-30" means as the neutral face; an empty text means none.
+    """Return what `--neutral` means, as `read_neutral` does.
 
     Raises:
-        ClipRefused: For anything else.
+        ClipRefused: If it means nothing.
     """
-    if not text:
-        return None
-    if text.lower() == "auto":
-        return NEUTRAL_QUANTILE
-    first, dash, last = text.partition("-")
     try:
-        return (int(first), int(last)) if dash else float(text)
+        return read_neutral(text)
     except ValueError as error:
-        raise ClipRefused(
-            f"--neutral is {text!r}; expected auto, a share such as 0.1, or frames such as 0-30."
-        ) from error
+        raise ClipRefused(f"--{error}.") from error
 
 
 def render_track_file(

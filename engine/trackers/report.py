@@ -113,6 +113,27 @@ class TrackReport:
         data: dict[str, Any] = _plain(asdict(self))
         return {**data, "stuck": list(self.stuck)}
 
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> TrackReport:
+        """Return the report that `to_json` made plain, with the numbers that it rounded.
+
+        Raises:
+            KeyError, TypeError: If it is none.
+        """
+        units = {
+            name: UnitReport(**{**unit, "columns": tuple(unit["columns"])})
+            for name, unit in data["units"].items()
+        }
+        return cls(
+            **{
+                **{name: value for name, value in data.items() if name != "stuck"},
+                "clock": ClockReport(**{**data["clock"], "doubts": tuple(data["clock"]["doubts"])}),
+                "units": units,
+                "ignored": {why: tuple(names) for why, names in data["ignored"].items()},
+                "notes": tuple(data["notes"]),
+            }
+        )
+
 
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):

@@ -133,7 +133,7 @@ def test_a_tracker_s_file_is_rendered_and_reported(track: Path, tmp_path: Path) 
         ("AU12_r\n1\n", ("--neutral", "often"), "expected auto, a share"),
         ("AU12_r\n1\n", ("--gain", "-1"), "gain is -1.0; expected"),
         ("AU12_r\n1\n", ("--rig", "nobody"), "no rig"),
-        ("AU12_r\n1\n", ("--url", "http://127.0.0.1:1"), "leave --url out"),
+        ("AU12_r\n1\n", ("--url", "http://127.0.0.1:1"), "does not answer"),
     ],
 )
 def test_a_tracker_s_file_that_cannot_be_rendered_is_refused(

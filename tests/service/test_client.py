@@ -235,3 +235,39 @@ def test_the_example_of_the_client_runs_as_it_is_shown(url: str, tmp_path: Path)
     assert "mm" in done.stdout
     for name in ("joy.glb", "clip.glb"):
         assert (tmp_path / name).read_bytes()[:4] == b"glTF"
+
+
+def test_a_tracker_s_file_is_sent_and_its_clip_saved(
+    service: Client, url: str, tmp_path: Path
+) -> None:
+    source, output = tmp_path / "laugh.csv", tmp_path / "laugh.glb"
+    rows = "\n".join(f"{i},{i / 30:.3f},0.98,1,0.2,{i}" for i in range(4))
+    source.write_text(f"frame,timestamp,confidence,success,pose_Ry,AU12_r\n{rows}\n")
+    shares: list[float] = []
+    asked = {"fps": 10, "textures": False, "level": "low", "gain": 0.5, "head": False}
+    report = service.save_track(source, output, show=shares.append, **asked)
+    assert output.read_bytes()[:4] == b"glTF"
+    assert shares[-1] == 1.0
+    assert report["track"]["units"]["AU12"]["played"] == pytest.approx(0.3)
+    assert report["track"]["angles"] == {}
+
+    output.unlink()
+    options = ["-o", str(output), "--url", url, "--key", KEY, "--no-textures", "--fps", "10"]
+    asked_too = ["--gain", "0.5", "--no-head", "--neutral", "0-0"]
+    command = ["clip", str(source), *options, *asked_too]
+    told = CliRunner().invoke(command_line, [*command, "--json"])
+    assert told.exit_code == 0, told.output
+    assert output.read_bytes()[:4] == b"glTF"
+    assert json.loads(told.stdout)["neutral"] is not None
+    tables = CliRunner().invoke(command_line, command)
+    assert "OpenFace 2" in tables.output
+
+    source.write_text("name,age\nJoe,7\n")
+    with pytest.raises(ServiceError, match="expected those of OpenFace 2") as refused:
+        service.save_track(source, output)
+    assert (refused.value.status, refused.value.error) == (422, "invalid_track")
+    output.unlink()
+    refused_too = CliRunner().invoke(command_line, command)
+    assert refused_too.exit_code == 2
+    assert "expected those of OpenFace 2" in " ".join(refused_too.output.split())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["laugh.csv"]

@@ -76,12 +76,20 @@ def test_a_clip_on_its_way_is_cancelled(client: TestClient) -> None:
         assert refused.json()["error"] == "clip_not_done"
 
 
-def test_a_track_is_not_available_yet(client: TestClient) -> None:
-    answer = client.post(
-        "/api/clips", content="frame,AU12_r\n1,0.5\n", headers={"Content-Type": "text/csv"}
-    )
-    assert answer.status_code == 415
-    assert answer.json()["error"] == "not_available"
+@pytest.mark.parametrize(
+    ("kind", "content", "said"),
+    [
+        ("text/plain", "frame,AU12_r\n1,0.5\n", "text/csv"),
+        ("application/json", "", "the body is empty"),
+        ("", "", "the body is empty"),
+    ],
+)
+def test_what_is_no_clip_by_its_type_is_told_what_is(
+    client: TestClient, kind: str, content: str, said: str
+) -> None:
+    answer = client.post("/api/clips", content=content, headers={"Content-Type": kind})
+    assert (answer.status_code, answer.json()["error"]) == (422, "invalid_body")
+    assert said in answer.json()["message"]
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,9 @@ import pytest
 from engine import Keyframe, Model, Timeline, builtin_rig
 from service.errors import Unprocessable
 from service.priority import BEHIND
-from service.render_process import Order, carry_out, part_of
+from service.render_process import Order, carry_out
 from service.renderer import Renderer, RenderingEnded
+from service.whole_files import part_of
 
 SMILE = Keyframe(action_units={"AU12": 1.0})
 Scene = Callable[[Renderer], Awaitable[None]]
