@@ -235,14 +235,19 @@ class GlbBuilder:
         """Return triangles with vertex `attributes`, each shape (n,) or (n, 2 to 4).
 
         Where the file embeds the colours of the material, those of the vertices are left out:
-        glTF would multiply the two. On a grid, attributes of our own are left out too.
+        glTF would multiply the two. On a grid, attributes of our own are left out too, and places
+        on textures that the file does not have.
         """
         maps = self._maps_of(material) if "TEXCOORD_0" in attributes else None
         if maps is not None:
             attributes = self._mapped(attributes, triangles, maps)
         tint: tuple[float, ...] = ()
         if grid is not None and grid.origin is not None:
-            attributes = {name: each for name, each in attributes.items() if name[0] != "_"}
+            shown = maps is not None or MATERIALS[material].picture is not None
+            left_out = ("_",) if shown else ("_", "TEXCOORD")
+            attributes = {
+                name: each for name, each in attributes.items() if not name.startswith(left_out)
+            }
             if "COLOR_0" in attributes:
                 # The material has the greatest, so that eight bits are enough for dark hair.
                 tint = tuple(float(value) for value in attributes["COLOR_0"].max(axis=0))
