@@ -32,9 +32,13 @@ def animated(data: bytes) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
 
     def numbers(accessor: int) -> np.ndarray[Any, Any]:
         entry = described["accessors"][accessor]
-        assert (entry["componentType"], entry["type"]) == (5126, "SCALAR")
+        assert entry["type"] == "SCALAR"
         start = described["bufferViews"][entry["bufferView"]].get("byteOffset", 0)
-        return np.frombuffer(blob, "<f4", entry["count"], start + entry.get("byteOffset", 0))
+        start += entry.get("byteOffset", 0)
+        if entry["componentType"] == 5126:
+            return np.frombuffer(blob, "<f4", entry["count"], start)
+        assert (entry["componentType"], entry["normalized"]) == (5122, True)
+        return np.frombuffer(blob, "<i2", entry["count"], start) / 32767.0
 
     (animation,) = described["animations"]
     skin = next(n for n, node in enumerate(described["nodes"]) if node["name"] == "skin")
