@@ -28,11 +28,20 @@ CSV_CONTENT: dict[int | str, dict[str, Any]] = {
     200: {"description": "Ground truth, a line a frame.", "content": {_CSV: {}}}
 }
 UNCHANGED: dict[int | str, dict[str, Any]] = {304: {"description": "The client has it already."}}
+_EVENT = {
+    "type": "object",
+    "properties": {
+        "event": {"enum": ["progress", "end"]},
+        "id": {"type": "string"},
+        "data": {"type": "string", "contentMediaType": "application/json"},
+    },
+    "required": ["event", "id", "data"],
+}
 _EVENTS_CONTENT: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "Events named `progress`, then one named `end`: each has as its data what "
         "GET of the clip answers.",
-        "content": {_EVENTS: {"schema": {"type": "string"}}},
+        "content": {_EVENTS: {"schema": _EVENT}},
     },
     204: {"description": "By its Last-Event-ID the client has heard the end."},
 }
