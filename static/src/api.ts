@@ -2,14 +2,14 @@
 
 import type { FaceState } from './protocol';
 import type { AttributeInfo, Recipe } from './recipe';
+import type { Place } from './feelings';
+import type { MuscleForm } from './muscle-shape';
 import { withTicket } from './ticket';
 
 /** Anything numeric in here can be edited; see tissueFields. */
 export type Tissue = Record<string, unknown>;
 
-export interface MuscleInfo {
-  name: string;
-  kind?: string;
+export interface MuscleInfo extends MuscleForm {
   activation?: unknown;
   force_scale?: number;
   strength?: number;
@@ -47,6 +47,19 @@ export interface RigInfo {
 export interface People {
   people: { name: string; title: string }[];
   attributes?: Record<string, AttributeInfo>;
+}
+
+export interface ReadFacs {
+  canonical: string;
+  units: { name: string; side: string; intensity: number }[];
+  warnings: { message: string }[];
+}
+
+interface ClipInfo {
+  id: string;
+  status: 'queued' | 'running' | 'done' | 'failed' | 'cancelled';
+  progress?: number;
+  message?: string;
 }
 
 export interface SessionInfo extends FaceState {
@@ -96,9 +109,26 @@ export class Api {
     return this.json('GET', 'api/people') as Promise<People>;
   }
 
+  /** Recipes of expressions, with where each lies among feelings. */
+  feelings(): Promise<{ recipes: (Partial<Place> & { name: string })[] }> {
+    return this.json('GET', 'api/emotions') as ReturnType<Api['feelings']>;
+  }
+
+  /** A FACS string as a rig reads it. */
+  readFacs(facs: string, rig: string): Promise<ReadFacs> {
+    return this.json('POST', 'api/facs', { facs, rig }) as Promise<ReadFacs>;
+  }
+
   /** The rig of a person who looks like this, kept as long as a session is on it. */
   person(base: string, recipe: Recipe): Promise<{ id: string }> {
     return this.json('POST', 'api/rigs', { base, recipe, passing: true }) as Promise<{
+      id: string;
+    }>;
+  }
+
+  /** The same face with tissue of another age. */
+  aged(base: string, age: string): Promise<{ id: string }> {
+    return this.json('POST', 'api/rigs', { base, tissue_age: age, passing: true }) as Promise<{
       id: string;
     }>;
   }
@@ -135,6 +165,33 @@ export class Api {
     this.ticket = (issued as { ticket: string }).ticket;
   }
 
+  /** The page that shows a session to whoever has its address, for a day. */
+  async linkTo(id: string, role: 'read' | 'control'): Promise<string> {
+    const issued = await this.json('POST', `api/sessions/${id}/tickets`, {
+      role,
+      seconds: TICKET_SECONDS,
+    });
+    return (issued as { url: string }).url;
+  }
+
+  /**
+   * Have a clip rendered.
+   * @param onProgress told how far it is, 0 to 1.
+   * @returns its GLB file.
+   */
+  async renderClip(clip: object, onProgress: (share: number) => void): Promise<Blob> {
+    let asked = (await this.json('POST', 'api/clips', clip)) as ClipInfo;
+    while (asked.status === 'queued' || asked.status === 'running') {
+      onProgress(asked.progress ?? 0);
+      asked = (await this.json('GET', `api/clips/${asked.id}?wait=1`)) as ClipInfo;
+    }
+    if (asked.status !== 'done') {
+      throw new ApiError(0, `The clip is not rendered: ${asked.message ?? asked.status}.`);
+    }
+    const response = await this.ask('GET', `api/clips/${asked.id}.glb`);
+    return response.blob();
+  }
+
   closeSession(id: string): Promise<unknown> {
     return this.json('DELETE', `api/sessions/${id}`);
   }
@@ -168,6 +225,12 @@ export class Api {
   }
 
   private async json(method: string, path: string, body?: unknown): Promise<unknown> {
+    const response = await this.ask(method, path, body);
+    return response.json().catch(() => null) as Promise<unknown>;
+  }
+
+  /** @throws ApiError for every answer that is not 2xx, and for none. */
+  private async ask(method: string, path: string, body?: unknown): Promise<Response> {
     let response: Response;
     try {
       response = await fetch(this.address(path), {
@@ -181,9 +244,9 @@ export class Api {
     } catch {
       throw new ApiError(0, 'The service does not answer.');
     }
+    if (response.ok) return response;
     const answer: unknown = await response.json().catch(() => null);
-    if (!response.ok) throw new ApiError(response.status, errorText(answer, response.status));
-    return answer;
+    throw new ApiError(response.status, errorText(answer, response.status));
   }
 }
 

@@ -1,32 +1,62 @@
 // What the sliders and buttons say to the face, as commands of one layer.
 
-import type { Layer } from './protocol';
-import { controlsCommand, emotionCommand, idleCommand, LAYERS, replaceCommand } from './protocol';
+import type { Layer, Numbers } from './protocol';
+import {
+  controlsCommand,
+  emotionCommand,
+  feelingCommand,
+  idleCommand,
+  LAYERS,
+  replaceCommand,
+} from './protocol';
+import { callOf } from './retold';
 import type { Group } from './state/actions';
+import type { Feeling } from './feelings';
+import { dominanceAt } from './feelings';
+import { History } from './state/history';
+import type { Cue, Held } from './take';
 import type { ViewerState } from './state/viewer.svelte';
 import { Throttle } from './throttle';
 
 /** Each action unit of an emotion takes the time that it takes on living faces. */
 const OWN_TIME = null;
 const RELEASE_FADE_SECONDS = 0.2;
+/** A face that is led through feelings is always this far behind the hand. */
+const FEELING_FADE_SECONDS = 0.15;
+const FACS_FADE_SECONDS = 0.3;
 /** After a control was moved here, what the service reports of it is older than the hand for this long. */
-const HANDS_OFF_MS = 700;
+export const HANDS_OFF_MS = 700;
+
+/** All that undoing brings back. */
+interface Snapshot {
+  controls: Record<Group, Numbers>;
+  emotion: string;
+  intensity: number;
+  feeling: Feeling | null;
+}
 
 export class Commands {
   private readonly throttle: Throttle;
+  /** The newest point among feelings, until the next frame says it. */
+  private readonly felt: Throttle;
+  private readonly history = new History<Snapshot>();
   private touchedAt = -Infinity;
 
   /**
-   * @param send puts a text frame on the socket.
+   * @param put puts a text frame on the socket.
    * @param schedule as for Throttle.
    */
   constructor(
     private readonly viewer: ViewerState,
-    private readonly send: (text: string) => void,
+    private readonly put: (text: string) => void,
     schedule?: (run: () => void) => void,
   ) {
     this.throttle = new Throttle((groups) => {
-      send(controlsCommand(groups));
+      this.send(controlsCommand(groups));
+    }, schedule);
+    this.felt = new Throttle(({ feeling }) => {
+      const { valence = 0, arousal = 0 } = feeling ?? {};
+      this.sendFeeling({ valence, arousal }, FEELING_FADE_SECONDS);
     }, schedule);
   }
 
@@ -36,12 +66,14 @@ export class Commands {
   }
 
   set(group: Group, name: string, value: number): void {
+    this.note(`${group}.${name}`);
     this.touch();
     if (group === 'action_units') this.settleSides(name);
     this.hold(group, name, value);
   }
 
   letGo(group: Group, name: string): void {
+    this.note(`let go of ${group}.${name}`);
     this.touch();
     const { sliders } = this.viewer;
     if (group === 'action_units') this.settleSides(name);
@@ -51,16 +83,95 @@ export class Commands {
   }
 
   playEmotion(label: string, intensity: number): void {
+    this.note(`emotion ${label}`);
     this.touch();
-    const fade = label === this.viewer.emotion ? 0 : OWN_TIME;
-    this.viewer.emotion = label;
-    this.send(emotionCommand(label, intensity, fade));
+    this.startEmotion(label, intensity);
   }
 
   stopEmotion(): void {
+    this.note('no emotion');
+    this.touch();
+    this.endEmotion();
+  }
+
+  /** Play the face of a point among feelings. */
+  feel(valence: number, arousal: number): void {
+    this.note('feeling');
     this.touch();
     this.viewer.emotion = '';
-    this.release('emotion');
+    this.viewer.feeling = { valence, arousal };
+    this.felt.set('feeling', 'valence', valence);
+    this.felt.set('feeling', 'arousal', arousal);
+  }
+
+  /** Play these units and no others, whatever plays as an emotion; pose and muscles stay. */
+  playUnits(units: Numbers): void {
+    this.note('FACS');
+    this.touch();
+    const { sliders } = this.viewer;
+    this.throttle.clear();
+    if (this.viewer.emotion !== '' || this.viewer.feeling !== null) this.endEmotion();
+    sliders.action_units = { ...units };
+    this.send(replaceCommand({ layer: 'puppet', fade: FACS_FADE_SECONDS, ...sliders.all() }));
+  }
+
+  /** Have the face itself read a FACS string and play it in place of what plays. */
+  playText(facs: string): void {
+    this.note('FACS');
+    this.throttle.clear();
+    if (this.viewer.emotion !== '' || this.viewer.feeling !== null) this.endEmotion();
+    const { muscles, jaw, gaze, head, tongue } = this.viewer.sliders.all();
+    const rest = { muscles, jaw, gaze, head, tongue };
+    this.send(replaceCommand({ layer: 'puppet', fade: FACS_FADE_SECONDS, facs, ...rest }));
+  }
+
+  /** What the controls hold, and what plays as an emotion. */
+  held(): Held {
+    const { controls, emotion, intensity, feeling } = this.snapshot();
+    if (emotion !== '') return { controls, plays: { label: emotion, intensity } };
+    if (feeling === null) return { controls, plays: null };
+    const dominance = dominanceAt(feeling, this.viewer.places);
+    return { controls, plays: { ...feeling, dominance } };
+  }
+
+  /** Go through a performance: nothing that is done here is undone later, and nothing is told. */
+  perform(pose: Partial<Record<Group, Numbers>>, fade: number): void {
+    this.touch();
+    this.throttle.clear();
+    for (const [group, values] of Object.entries(pose) as [Group, Numbers][]) {
+      for (const [name, value] of Object.entries(values)) {
+        if (value === 0) Reflect.deleteProperty(this.viewer.sliders[group], name);
+        else this.viewer.sliders[group][name] = value;
+      }
+    }
+    this.put(controlsCommand({ ...pose, fade }));
+  }
+
+  /** The same for what plays as an emotion. */
+  performCue(plays: Cue['plays']): void {
+    this.touch();
+    this.felt.clear();
+    const { viewer } = this;
+    viewer.emotion = '';
+    viewer.feeling = null;
+    if (plays === null) {
+      this.put(replaceCommand({ layer: 'emotion', fade: RELEASE_FADE_SECONDS }));
+    } else if ('label' in plays) {
+      viewer.emotion = plays.label;
+      viewer.emotionIntensity = plays.intensity;
+      this.put(emotionCommand(plays.label, plays.intensity, OWN_TIME));
+    } else {
+      viewer.feeling = { valence: plays.valence, arousal: plays.arousal };
+      this.put(feelingCommand(plays, FEELING_FADE_SECONDS));
+    }
+  }
+
+  undo(): void {
+    this.goTo(this.history.undo(this.snapshot()));
+  }
+
+  redo(): void {
+    this.goTo(this.history.redo(this.snapshot()));
   }
 
   /** Have the face blink, look about and sway by itself, or leave it still. */
@@ -71,6 +182,7 @@ export class Commands {
   }
 
   reset(): void {
+    this.note('reset');
     this.touch();
     this.forget();
     for (const layer of LAYERS) this.release(layer);
@@ -79,21 +191,82 @@ export class Commands {
   /** Put the controls back without a word to the face, for one that begins anew. */
   forget(): void {
     this.throttle.clear();
+    this.felt.clear();
     this.viewer.sliders.take({});
     this.viewer.emotion = '';
+    this.viewer.feeling = null;
   }
 
   /** What is held now, to be asked of another face: call it once that face has said hello. */
   carried(): () => void {
-    const { emotion, emotionIntensity } = this.viewer;
-    const controls = JSON.parse(JSON.stringify(this.viewer.sliders.all())) as ReturnType<
-      ViewerState['sliders']['all']
-    >;
+    const held = this.snapshot();
     return () => {
-      this.viewer.sliders.take(controls);
-      if (emotion !== '') this.playEmotion(emotion, emotionIntensity);
-      this.send(replaceCommand({ layer: 'puppet', fade: RELEASE_FADE_SECONDS, ...controls }));
+      this.restore(held);
     };
+  }
+
+  private note(gesture: string): void {
+    this.history.note(gesture, () => this.snapshot());
+    this.tellHistory();
+  }
+
+  private tellHistory(): void {
+    this.viewer.canUndo = this.history.canUndo;
+    this.viewer.canRedo = this.history.canRedo;
+  }
+
+  private snapshot(): Snapshot {
+    const { sliders, emotion, emotionIntensity, feeling } = this.viewer;
+    const controls = JSON.parse(JSON.stringify(sliders.all())) as Snapshot['controls'];
+    return { controls, emotion, intensity: emotionIntensity, feeling };
+  }
+
+  private goTo(snapshot: Snapshot | null): void {
+    if (snapshot !== null) this.restore(snapshot);
+    this.tellHistory();
+  }
+
+  /** Have the face do what it did when `held` was taken. */
+  private restore({ controls, emotion, intensity, feeling }: Snapshot): void {
+    this.touch();
+    this.throttle.clear();
+    this.felt.clear();
+    const { viewer } = this;
+    const playing = viewer.emotion !== '' || viewer.feeling !== null;
+    viewer.sliders.take(controls);
+    viewer.emotionIntensity = intensity;
+    if (emotion !== '') this.startEmotion(emotion, intensity);
+    else if (feeling !== null) {
+      viewer.feeling = feeling;
+      viewer.emotion = '';
+      this.sendFeeling(feeling, RELEASE_FADE_SECONDS);
+    } else if (playing) this.endEmotion();
+    this.send(replaceCommand({ layer: 'puppet', fade: RELEASE_FADE_SECONDS, ...controls }));
+  }
+
+  private startEmotion(label: string, intensity: number): void {
+    const fade = label === this.viewer.emotion ? 0 : OWN_TIME;
+    this.felt.clear();
+    this.viewer.emotion = label;
+    this.viewer.feeling = null;
+    this.send(emotionCommand(label, intensity, fade));
+  }
+
+  private sendFeeling(point: Feeling, fade: number): void {
+    const dominance = dominanceAt(point, this.viewer.places);
+    this.send(feelingCommand({ ...point, dominance }, fade));
+  }
+
+  private endEmotion(): void {
+    this.felt.clear();
+    this.viewer.emotion = '';
+    this.viewer.feeling = null;
+    this.release('emotion');
+  }
+
+  private send(text: string): void {
+    this.viewer.lastCall = callOf(text) ?? this.viewer.lastCall;
+    this.put(text);
   }
 
   private touch(): void {

@@ -114,6 +114,8 @@ export class Face {
   readonly root: Group;
   readonly landmarks: Readonly<Record<string, number>>;
   readonly names: readonly string[];
+  /** Labels of the regions of its skin. */
+  readonly regionNames: readonly string[];
   private readonly surface: DrawnSurface;
   private readonly normals: MovingNormals;
   private readonly skinPosition: BufferAttribute;
@@ -201,6 +203,7 @@ export class Face {
     this.grid = (gltf.asset.extras as { grid?: number } | undefined)?.grid ?? DEFAULT_GRID;
     const extras = skin.userData as SkinExtras;
     this.landmarks = extras.landmarks ?? {};
+    this.regionNames = extras.region_names ?? [];
     const tissue = meshes(this.root).find((mesh) => mesh.userData.role === 'tissue');
     this.tissueRest =
       tissue === undefined
@@ -316,6 +319,34 @@ export class Face {
     const vertex = this.landmarks[name];
     if (vertex === undefined) return null;
     return this.drawnVertex(vertex).map((value) => value / MILLIMETRES) as Triple;
+  }
+
+  /** Have something that lies in the head's frame [m] go with the head. */
+  carry(object: Object3D): void {
+    const head = this.nodes.get('head');
+    const [x, y, z] = [0, 1, 2].map((axis) => this.origin('head', axis)) as [
+      number,
+      number,
+      number,
+    ];
+    if (head === undefined) {
+      this.root.add(object);
+      return;
+    }
+    object.position.set(-x, -y, -z);
+    head.add(object);
+  }
+
+  /** All streamed points at rest [mm, head frame], x y z after x y z. */
+  get restPoints(): Float32Array {
+    return this.tissueRest.map(
+      (value, at) => (this.origin('tissue', at % 3) + value) * MILLIMETRES,
+    );
+  }
+
+  /** How far a streamed point is from rest [m]. */
+  displacement(point: number): readonly [number, number, number] {
+    return this.surface.displacement(point);
   }
 
   /** Fetch the face's maps; returns what could not be had, as one sentence. */

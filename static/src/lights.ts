@@ -14,31 +14,47 @@ import {
   Scene,
   ShaderMaterial,
 } from 'three';
+import type { LightPreset, SoftBox } from './light-presets';
 
 const SHADOW_MAP_SIZE = 1024;
 
-/** Lights for a camera in front of the face; turn the group with the camera, so that every view is well lit. */
-export function createLights(): Group {
-  const lights = new Group();
-  const key = new DirectionalLight(0xfff4ea, 2.8);
-  key.position.set(-0.215, 0.25, 0.35);
+export interface StudioLights {
+  /** Turn it with the camera, so that every view is well lit. */
+  group: Group;
+  /** Set every lamp as a preset says. */
+  set(preset: LightPreset): void;
+}
+
+/** The lamps, dark until a preset is set. */
+export function createLights(): StudioLights {
+  const [key, fill, rimLeft, rimRight] = [1, 2, 3, 4].map(() => new DirectionalLight()) as [
+    DirectionalLight,
+    DirectionalLight,
+    DirectionalLight,
+    DirectionalLight,
+  ];
   castSoftShadow(key);
-  const fill = new DirectionalLight(0xe6ebf7, 0.36);
-  fill.position.set(0.36, 0.02, 0.3);
-  // From so far behind, these touch only edges, and no shadow of theirs is missed.
-  const rimLeft = new DirectionalLight(0xeef2fa, 0.9);
-  rimLeft.position.set(0.26, 0.16, -0.36);
-  const rimRight = new DirectionalLight(0xffecd8, 0.7);
-  rimRight.position.set(-0.28, 0.12, -0.36);
-  lights.add(
-    key,
-    key.target,
-    fill,
-    rimLeft,
-    rimRight,
-    new HemisphereLight(0xeceef4, 0x8a6a5a, 0.1),
-  );
-  return lights;
+  const sky = new HemisphereLight();
+  const group = new Group();
+  group.add(key, key.target, fill, rimLeft, rimRight, sky);
+  const light = (lamp: DirectionalLight, { color, intensity, from }: LightPreset['fill']): void => {
+    lamp.color.set(color);
+    lamp.intensity = intensity;
+    lamp.position.set(...from);
+  };
+  return {
+    group,
+    set(preset) {
+      light(key, preset.key);
+      key.shadow.intensity = preset.key.shadow;
+      light(fill, preset.fill);
+      light(rimLeft, preset.rims[0]);
+      light(rimRight, preset.rims[1]);
+      sky.color.set(preset.sky.above);
+      sky.groundColor.set(preset.sky.below);
+      sky.intensity = preset.sky.intensity;
+    },
+  };
 }
 
 function castSoftShadow(light: DirectionalLight): void {
@@ -46,8 +62,6 @@ function castSoftShadow(light: DirectionalLight): void {
   light.shadow.mapSize.set(SHADOW_MAP_SIZE, SHADOW_MAP_SIZE);
   // A soft box as near as a portrait's: what stands off by 2 cm throws an edge of about 8 mm.
   light.shadow.radius = 12;
-  // Some of the key's light comes back from the room, also where it does not reach.
-  light.shadow.intensity = 0.8;
   light.shadow.bias = -0.0008;
   light.shadow.normalBias = 0.0014;
   const camera = light.shadow.camera;
@@ -55,39 +69,31 @@ function castSoftShadow(light: DirectionalLight): void {
   [camera.near, camera.far] = [0.1, 0.9];
 }
 
-/** What glossy surfaces mirror: a dim room, the key's box, a strip at the other side, a ceiling, boxes behind. */
-export function createEnvironment(renderer: WebGLRenderer): Texture {
+/** What glossy surfaces mirror: a room and its soft boxes. */
+export function createEnvironment(
+  renderer: WebGLRenderer,
+  { walls, boxes }: LightPreset['room'],
+): Texture {
   const room = new Scene();
-  room.background = new Color(0x2a2b2e);
-  room.add(
-    softBox([-4, 3.8, 5], [3.2, 3.6], 12),
-    softBox([5.4, 0.4, 3.6], [1.6, 5], 3.4),
-    softBox([0, 7, 0.5], [6, 4], 3.2),
-    softBox([0, -6, 3], [7, 3], 0.9),
-    softBox([5, 2, -5], [2.2, 5], 5),
-    softBox([-5.4, 2, -5], [1.8, 5], 3.2),
-  );
+  room.background = new Color(walls);
+  room.add(...boxes.map(softBox));
   const generator = new PMREMGenerator(renderer);
   const environment = generator.fromScene(room, 0.01).texture;
   generator.dispose();
   return environment;
 }
 
-function softBox(
-  position: [number, number, number],
-  size: [number, number],
-  radiance: number,
-): Mesh {
+function softBox({ from, size, radiance }: SoftBox): Mesh {
   const box = new Mesh(
     new PlaneGeometry(...size),
     new MeshBasicMaterial({ color: new Color(radiance, radiance, radiance), side: DoubleSide }),
   );
-  box.position.set(...position);
+  box.position.set(...from);
   box.lookAt(0, 0, 0);
   return box;
 }
 
-/** What may stand behind the face: on a page of its own the dark one, in documents also the light one. */
+/** What may stand behind the face: as the page is, dark or light. */
 export const GROUNDS = {
   dark: { centre: '#4a4d50', edge: '#17191c' },
   light: { centre: '#ffffff', edge: '#dcd9d4' },

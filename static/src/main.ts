@@ -3,8 +3,9 @@
 import { mount } from 'svelte';
 import type { SessionInfo } from './api';
 import { Api, ApiError } from './api';
-import { Commands } from './commands';
+import { Commands, HANDS_OFF_MS } from './commands';
 import { Connection } from './connection';
+import { takeDrops } from './dropping';
 import { Edits } from './edits';
 import { Face } from './face';
 import './handle';
@@ -12,20 +13,34 @@ import type { Level } from './level';
 import { atLevel, levelFor } from './level';
 import Curtain from './panels/Curtain.svelte';
 import Panels from './panels/Panels.svelte';
+import Keys from './panels/Keys.svelte';
 import People from './panels/People.svelte';
 import StatusBar from './panels/StatusBar.svelte';
+import Timeline from './panels/Timeline.svelte';
 import type { FaceState, Hello } from './protocol';
+import type { MuscleForm } from './muscle-shape';
+import { MuscleView } from './muscle-view';
+import { copied, offer } from './offer';
+import { Performer } from './performer';
 import { expressionOf } from './protocol';
 import { Scene } from './scene';
+import { listenForShortcuts } from './shortcuts';
+import { shortcutsOf } from './state/keys';
 import type { Actions } from './state/actions';
+import { facsOf, unitsOf } from './state/facs';
+import { middleOf } from './feelings';
 import { fetching, painting, starting } from './state/loading';
 import { describeRig, readable, tissuePatch } from './state/rig';
+import { TimelineState } from './state/timeline.svelte';
 import { ViewerState } from './state/viewer.svelte';
 import './style.css';
+import { takeActions } from './take-actions';
+import { takeOf } from './take-of-clip';
 import { debounce } from './throttle';
 import { ticketIn, withTicket } from './ticket';
 import { TickRate } from './tick-rate';
 import type { Recipe } from './recipe';
+import { keptTheme, onDeviceTheme, useTheme } from './theme';
 import { readPageOptions } from './url';
 
 const page = readPageOptions(window.location.search);
@@ -36,12 +51,17 @@ const rate = new TickRate();
 viewer.rigName = page.rig;
 viewer.view = page.view;
 viewer.alive = page.idle && moving();
+viewer.light = page.light;
+viewer.theme = keptTheme();
 document.body.classList.toggle('bare', page.bare);
+if (page.bare) document.documentElement.dataset.theme = 'dark';
 
 const PERSON_PAUSE_MS = 350;
 /** Where the key is kept: as long as the tab is open, and for this page only. */
 const KEY_PLACE = 'risorius.key';
 const START_POLL_MS = 500;
+/** How often it is asked who else watches. */
+const COUNT_MS = 5000;
 api.key = window.sessionStorage.getItem(KEY_PLACE) ?? '';
 /** What was asked of the person on the stage since they were made; the rest follows sex and age. */
 let wished: Recipe = {};
@@ -50,6 +70,9 @@ let wishes = 0;
 const STRANGERS = 2 ** 32;
 
 let face: Face | null = null;
+/** Of the rig that is shown, and drawn over it while somebody looks inside. */
+let muscles: readonly MuscleForm[] = [];
+let muscleView: MuscleView | null = null;
 /** Address of the surface that is wanted; the face shown may still be another. */
 let surfaceAddress = '';
 let surfaceLoading = false;
@@ -83,6 +106,16 @@ const connection = new Connection({
   },
 });
 const commands = new Commands(viewer, (text) => connection.send(text));
+const timeline = new TimelineState();
+const performer = new Performer(timeline, {
+  held: () => commands.held(),
+  pose: (pose, fade) => {
+    commands.perform(pose, fade);
+  },
+  cue: (plays) => {
+    commands.performCue(plays);
+  },
+});
 const edits = new Edits((key, reason) => {
   Reflect.deleteProperty(viewer.edits, key);
   viewer.say(reason);
@@ -93,8 +126,15 @@ function createScene(): Scene {
     return new Scene(element('face') as HTMLCanvasElement, {
       orbit: !page.bare,
       pixelRatio: page.pixelRatio,
+      adaptive: !page.bare,
       still: page.still,
       view: page.view,
+      light: page.light,
+      ground: page.bare ? 'dark' : useTheme(viewer.theme),
+      onTurning: (turning) => (viewer.turning = turning),
+      onTrouble: (sentence) => {
+        viewer.say(sentence);
+      },
       placeOf: (name) => face?.landmarkPlace(name) ?? null,
       update,
     });
@@ -173,8 +213,14 @@ function streamOf(info: SessionInfo): string {
 async function welcome(hello: Hello): Promise<void> {
   viewer.session = session = hello.session;
   viewer.locked = '';
+  viewer.keyed = api.key !== '' || api.ticket !== '';
+  void countViewers();
   if (viewer.surfaceReady) element('curtain').classList.add('open');
-  if (hello.role !== undefined) document.body.classList.toggle('watching', hello.role === 'read');
+  if (hello.role !== undefined) {
+    viewer.role = hello.role;
+    document.body.classList.toggle('watching', hello.role === 'read');
+  }
+  viewer.guest = isGuest();
   if (hello.state !== undefined) takeState(hello.state);
   const address = atLevel(api.place(hello.surface), level);
   try {
@@ -212,6 +258,7 @@ async function showFace(address: string): Promise<void> {
   scene.add(face.root);
   scene.reframe();
   viewer.surfaceReady = true;
+  viewer.regions = [...loaded.regionNames].sort();
   viewer.step = null;
   void loadMaps(loaded);
   // The frame that came while loading is still waiting, and is drawn now.
@@ -227,6 +274,8 @@ async function showRig(id: string, isNew: boolean): Promise<void> {
   if (rigId !== id) return;
   viewer.recipe = described.recipe;
   const rig = describeRig(described);
+  muscles = described.muscles;
+  showMuscles();
   if (isNew) {
     viewer.rig = rig;
     viewer.edits = {};
@@ -237,21 +286,54 @@ async function showRig(id: string, isNew: boolean): Promise<void> {
   }
 }
 
+/** What came while a control was in hand counts once the hand is off. */
+const takeStateLater = debounce((state: FaceState) => {
+  takeState(state);
+}, HANDS_OFF_MS);
+
 function takeState(state: FaceState): void {
   viewer.merged = state.merged ?? {};
-  if (!commands.handsOff) return;
+  muscleView?.show(viewer.merged.muscles ?? {});
+  if (muscleView !== null) scene.wake();
+  viewer.facs = facsOf(state);
+  takeStateLater.cancel();
+  if (!commands.handsOff) {
+    takeStateLater(state);
+    return;
+  }
   if (state.idle !== undefined) viewer.alive = state.idle !== null;
   viewer.sliders.take(state.layers?.puppet ?? {});
   const emotion = state.layers?.emotion?.emotion;
   viewer.emotion = expressionOf(emotion);
   if (emotion !== undefined) viewer.emotionIntensity = emotion.intensity;
+  if (emotion?.found !== 'coordinates') viewer.feeling = null;
+  // The point itself is known to whoever put it there; others see about where it lies.
+  else viewer.feeling ??= middleOf(emotion.parts ?? [], viewer.places);
 }
 
 /** Take in what is new; tells whether it changed what is drawn. */
 function update(): boolean {
   const faded = face?.stepFade(performance.now(), moving()) ?? false;
   if (face?.fading === true) scene.wake();
-  return applyNewestFrame() || faded;
+  const moved = applyNewestFrame();
+  if (moved) muscleView?.move();
+  const glows = muscleView?.step(performance.now()) ?? false;
+  if (glows) scene.wake();
+  return moved || faded || glows;
+}
+
+/** Draw the muscles of the face on the stage, if they are asked for. */
+function showMuscles(): void {
+  muscleView?.dispose();
+  muscleView = null;
+  if (viewer.inside && face !== null && muscles.length > 0) {
+    const { restPoints: rest } = face;
+    const shown = face;
+    muscleView = new MuscleView(muscles, { rest, displacement: (at) => shown.displacement(at) });
+    muscleView.show(viewer.merged.muscles ?? {});
+    face.carry(muscleView.mesh);
+  }
+  scene.invalidate();
 }
 
 /** A visitor sees the maps fade in; a picture of the page need not wait, nor who wants no motion. */
@@ -313,6 +395,37 @@ const actions: Actions = {
   stopEmotion: () => {
     commands.stopEmotion();
   },
+  feel: (valence, arousal) => {
+    commands.feel(valence, arousal);
+  },
+  async setFacs(text) {
+    try {
+      const read = text === '' ? { units: [], warnings: [] } : await api.readFacs(text, rigId);
+      commands.playUnits(unitsOf(read.units));
+      viewer.say(read.warnings.map(({ message }) => message).join(' '));
+      return '';
+    } catch (error) {
+      // Who came by a link may move the face, and read nothing but it: then the face is asked itself.
+      if (error instanceof ApiError && error.status === 403) {
+        commands.playText(text);
+        return '';
+      }
+      return error instanceof Error ? error.message : 'That is no FACS string.';
+    }
+  },
+  undo: () => {
+    commands.undo();
+  },
+  redo: () => {
+    commands.redo();
+  },
+  copy(text, what) {
+    void copied(text).then((done) => {
+      viewer.tell(
+        done ? `${what} is on the clipboard.` : `The browser does not copy. ${what}: ${text}`,
+      );
+    });
+  },
   setAlive: (alive) => {
     commands.setAlive(alive);
   },
@@ -320,6 +433,14 @@ const actions: Actions = {
     const key = path.join('.');
     viewer.edits[key] = value;
     edits.edit(key, () => api.patchTissue(session, tissuePatch(path, value)));
+  },
+  setTissueAge(age) {
+    api
+      .aged(rigId, age)
+      .then(({ id }) => {
+        actions.switchRig(id);
+      })
+      .catch(sayWhy);
   },
   setMuscleField(muscle, field, value) {
     const key = `${muscle}.${field}`;
@@ -360,6 +481,47 @@ const actions: Actions = {
     viewer.view = view;
     scene.glideTo(view);
   },
+  setLight(light) {
+    viewer.light = light;
+    scene.setLight(light);
+  },
+  setTheme(theme) {
+    viewer.theme = theme;
+    scene.setGround(useTheme(theme));
+  },
+  setInside(inside) {
+    viewer.inside = inside;
+    showMuscles();
+  },
+  setTurning: (turning) => {
+    scene.setTurning(turning);
+  },
+  savePicture() {
+    scene
+      .picture()
+      .then((picture) => {
+        offer(picture, `${viewer.rig?.name ?? 'face'}.png`);
+      })
+      .catch(sayWhy);
+  },
+  copyLink(role) {
+    linkTo(role)
+      .then((link) => {
+        actions.copy(link, role === 'read' ? 'A link to watch' : 'A link to move this face');
+      })
+      .catch(sayWhy);
+  },
+  ...takeActions({
+    timeline,
+    performer,
+    held: () => commands.held(),
+    rig: () => ({ id: rigId, name: viewer.rig?.name ?? 'face' }),
+    render: (clip, onProgress) => api.renderClip(clip, onProgress),
+    offer,
+    failed: (error) => {
+      sayWhy(error);
+    },
+  }),
   reset() {
     commands.reset();
     viewer.say('');
@@ -375,6 +537,7 @@ const actions: Actions = {
     viewer.say('');
     connection.connect();
     if (!page.bare) void loadPeople();
+    if (!page.bare) void loadFeelings();
   },
 };
 
@@ -390,6 +553,23 @@ const becomePerson = debounce(() => {
     })
     .catch(sayWhy);
 }, PERSON_PAUSE_MS);
+
+/** A link for others. Where no key is asked for, the page's own address moves the face. */
+async function linkTo(role: 'read' | 'control'): Promise<string> {
+  // A link makes no other links: it is handed on as it is.
+  if (isGuest()) return window.location.href;
+  if (role === 'read' || api.key !== '') return api.linkTo(session, role);
+  const address = new URL(document.baseURI);
+  address.search = new URLSearchParams({ session }).toString();
+  return address.href;
+}
+
+/** Count who watches, now and again while somebody looks at this page. */
+async function countViewers(): Promise<void> {
+  if (page.bare || document.hidden || viewer.status !== 'open') return;
+  const known = await api.session(session).catch(() => null);
+  viewer.watching = known?.viewers ?? viewer.watching;
+}
 
 function sayWhy(error: unknown): void {
   viewer.say(error instanceof Error ? error.message : 'That did not work.');
@@ -450,6 +630,26 @@ async function loadPeople(): Promise<void> {
   }
 }
 
+/** Put a timeline that was saved on the timeline again. */
+async function openFile(file: File): Promise<void> {
+  try {
+    timeline.use(takeOf(await file.text()));
+    viewer.tell(`${file.name} is in the timeline.`);
+  } catch (error) {
+    sayWhy(error);
+  }
+}
+
+/** Learn where expressions lie among feelings; without that the plane has no signposts. */
+async function loadFeelings(): Promise<void> {
+  const { recipes } = await api.feelings().catch(() => ({ recipes: [] }));
+  viewer.places = recipes.flatMap(({ name, valence, arousal, dominance = 0, anchor = false }) =>
+    valence === undefined || arousal === undefined
+      ? []
+      : [{ name, valence, arousal, dominance, anchor }],
+  );
+}
+
 element('curtain').textContent = '';
 mount(Curtain, { target: element('curtain'), props: { viewer, actions } });
 if (!page.bare) {
@@ -460,10 +660,24 @@ if (!page.bare) {
     },
     { once: true },
   );
-  mount(StatusBar, { target: element('bar'), props: { viewer, actions } });
+  const place = (path: string): string => api.place(path);
+  mount(StatusBar, { target: element('bar'), props: { viewer, actions, place } });
+  window.setInterval(() => void countViewers(), COUNT_MS);
+  onDeviceTheme(() => {
+    scene.setGround(useTheme(viewer.theme));
+  });
   const link = (path: string): string => api.address(path);
   mount(People, { target: element('people'), props: { viewer, actions, link } });
   void loadPeople();
+  void loadFeelings();
+  mount(Timeline, { target: element('timeline'), props: { viewer, timeline, actions } });
+  takeDrops(
+    (file) => void openFile(file),
+    (over) => document.body.classList.toggle('dropping', over),
+  );
+  const shortcuts = shortcutsOf(viewer, actions);
+  listenForShortcuts(shortcuts);
+  mount(Keys, { target: document.body, props: { viewer, shortcuts } });
   mount(Panels, {
     target: element('panels'),
     props: { viewer, actions, link },

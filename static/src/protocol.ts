@@ -251,6 +251,8 @@ export function readMessage(text: string): ServerMessage {
 export interface Controls {
   layer?: Layer;
   fade?: number;
+  /** Action units as a FACS string. */
+  facs?: string;
   action_units?: Numbers;
   muscles?: Numbers;
   jaw?: Numbers;
@@ -272,6 +274,14 @@ export function replaceCommand(controls: Controls): string {
 /** Play an emotion in its first variant: the same one while its intensity is dragged. */
 export function emotionCommand(label: string, intensity: number, fadeIn: number | null): string {
   return JSON.stringify({ type: 'emotion', label, intensity, fade_in: fadeIn, seed: 0 });
+}
+
+/** Play the face of a point among feelings. @param fadeIn seconds until it is there. */
+export function feelingCommand(
+  point: { valence: number; arousal: number; dominance: number },
+  fadeIn: number,
+): string {
+  return JSON.stringify({ type: 'emotion', ...point, fade_in: fadeIn, seed: 0 });
 }
 
 /** Have the face live by itself, or no more. */

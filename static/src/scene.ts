@@ -9,14 +9,22 @@ import {
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import type { LightName } from './light-presets';
+import { LIGHTS } from './light-presets';
 import type { Ground } from './lights';
 import { createBackdrop, createEnvironment, createLights, setGround } from './lights';
+import { steppedOrbit } from './orbit-keys';
+import { Resolution } from './resolution';
 import { exposeSkin } from './tone';
 import type { PlaceOfLandmark, Shot } from './views';
 import { shotOf } from './views';
 
 /** Lashes are thinner than a pixel: below this they fall apart into dots. */
 const LEAST_PIXEL_RATIO = 1.5;
+/** On the slowest devices, while things move. */
+const COARSEST = 0.6;
+/** So long after the last movement the picture is drawn as finely as it can be [ms]. */
+const SHARP_AFTER_MS = 250;
 /** Share of the camera's way around the face that the lights go with it. */
 const LIGHTS_FOLLOW = 0.8;
 /** Degrees and time of the camera's way to its first view. */
@@ -24,6 +32,10 @@ const ENTER_FROM = 38;
 const ENTER_MS = 1800;
 /** How long the camera takes from one view to another [ms]. */
 const GLIDE_MS = 900;
+/** Degrees a second of the turntable: once round in half a minute. */
+const TURNTABLE_SPEED = 12;
+/** A step of the turntable after a pause, as of a hidden page, is no longer than this [ms]. */
+const LONGEST_STEP_MS = 100;
 /** Height of the bar over the stage, whose half the head makes room for [CSS px]. */
 const BAR_HEIGHT = 40;
 
@@ -36,17 +48,28 @@ const LEAST_DISTANCE = 0.5;
 const NEAREST = 0.45;
 const FARTHEST = 2.8;
 
+const UP = new Vector3(0, 1, 0);
+
 export interface SceneOptions {
   /** Let the visitor turn the camera. */
   orbit: boolean;
   pixelRatio: number | null;
+  /** Draw in fewer pixels where the device is too slow for all of them. */
+  adaptive: boolean;
   /** Draw only when asked by `rendered`. */
   still: boolean;
   view: string;
+  light: LightName;
+  /** What it stands before; `none` shows the page behind. */
+  ground: Ground | 'none';
   /** Where the face has a landmark; close-ups look at them. */
   placeOf: PlaceOfLandmark;
   /** Take in what is new, e.g. the newest frame; tells whether it changed anything that is drawn. */
   update: () => boolean;
+  /** The turntable began, or ended. */
+  onTurning?: (turning: boolean) => void;
+  /** It cannot draw, in a sentence; empty once it can again. */
+  onTrouble?: (sentence: string) => void;
 }
 
 export class Scene {
@@ -58,6 +81,11 @@ export class Scene {
   private readonly controls: OrbitControls | null;
   private readonly observer: ResizeObserver;
   private readonly lights = createLights();
+  /** Null where the ratio is given. */
+  private readonly resolution: Resolution | null;
+  private sharpening: ReturnType<typeof setTimeout> | undefined;
+  private turning = false;
+  private steppedAt = 0;
   private view: string;
   private shot: Shot;
   private readonly target = new Vector3();
@@ -80,23 +108,34 @@ export class Scene {
     this.renderer = new WebGLRenderer({
       canvas,
       antialias: true,
+      alpha: options.ground === 'none',
       powerPreference: 'high-performance',
     });
     exposeSkin(this.renderer);
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
-    this.renderer.setPixelRatio(
-      options.pixelRatio ?? Math.min(Math.max(window.devicePixelRatio, LEAST_PIXEL_RATIO), 2),
-    );
-    this.scene.add(this.backdrop, this.lights);
-    this.scene.environment = createEnvironment(this.renderer);
-    this.scene.environmentIntensity = 0.24;
+    const ratio =
+      options.pixelRatio ?? Math.min(Math.max(window.devicePixelRatio, LEAST_PIXEL_RATIO), 2);
+    this.renderer.setPixelRatio(ratio);
+    // Who says how finely to draw gets that.
+    this.resolution =
+      options.adaptive && options.pixelRatio === null ? new Resolution(ratio, COARSEST) : null;
+    this.scene.add(this.lights.group);
+    if (options.ground !== 'none') {
+      this.scene.add(this.backdrop);
+      setGround(this.backdrop, options.ground);
+    }
+    this.setLight(options.light);
     this.controls = options.orbit ? this.createControls() : null;
     this.observer = new ResizeObserver(() => {
       this.resize();
     });
     this.observer.observe(canvas);
+    canvas.addEventListener('webglcontextlost', () => {
+      options.onTrouble?.('The graphics processor gave up; the face comes back when it does.');
+    });
     canvas.addEventListener('webglcontextrestored', () => {
+      options.onTrouble?.('');
       this.invalidate();
     });
     this.resize();
@@ -112,6 +151,44 @@ export class Scene {
     const gl = this.renderer.getContext();
     const named = gl.getExtension('WEBGL_debug_renderer_info');
     return String(gl.getParameter(named === null ? gl.RENDERER : named.UNMASKED_RENDERER_WEBGL));
+  }
+
+  setLight(name: LightName): void {
+    const preset = LIGHTS[name];
+    this.lights.set(preset);
+    this.scene.environment?.dispose();
+    this.scene.environment = createEnvironment(this.renderer, preset.room);
+    this.scene.environmentIntensity = preset.room.intensity;
+    this.invalidate();
+  }
+
+  /** Go round the head, until told not to, or until somebody takes the camera in hand. */
+  setTurning(turning: boolean): void {
+    if (turning === this.turning) return;
+    this.turning = turning;
+    this.steppedAt = performance.now();
+    this.options.onTurning?.(turning);
+    this.wake();
+  }
+
+  /** What is seen now, as a PNG file. */
+  picture(): Promise<Blob> {
+    this.draw();
+    return new Promise((resolve, reject) => {
+      // In the same task as the drawing: later the buffer may be empty.
+      this.canvas.toBlob((blob) => {
+        if (blob === null) reject(new Error('The browser makes no picture of this size.'));
+        else resolve(blob);
+      }, 'image/png');
+    });
+  }
+
+  dispose(): void {
+    clearTimeout(this.sharpening);
+    this.observer.disconnect();
+    this.controls?.dispose();
+    this.scene.environment?.dispose();
+    this.renderer.dispose();
   }
 
   /**
@@ -142,6 +219,7 @@ export class Scene {
 
   /** Go round to a view, as someone would who walks about the head; at once for who wants no motion. */
   glideTo(name: string, from = this.standing(), duration = GLIDE_MS): void {
+    this.setTurning(false);
     this.setView(name);
     if (window.matchMedia('(prefers-reduced-motion: reduce)').matches) return;
     this.glide = { from, to: this.angle, start: performance.now(), duration };
@@ -166,10 +244,39 @@ export class Scene {
     requestAnimationFrame(() => {
       this.scheduled = false;
       this.stepGlide(performance.now());
+      this.stepTurntable(performance.now());
       const updated = this.options.update();
       this.changed ||= updated;
-      if (this.changed && !(this.options.still && this.waiting.length === 0)) this.draw();
+      if (this.changed && !(this.options.still && this.waiting.length === 0)) this.drawInTime();
     });
+  }
+
+  /** Draw, and see how long it keeps the next animation frame waiting: a busy device is late with it. */
+  private drawInTime(): void {
+    const { resolution } = this;
+    if (resolution !== null) {
+      clearTimeout(this.sharpening);
+      this.useRatio(resolution.ratio);
+      const started = performance.now();
+      requestAnimationFrame(() => {
+        if (!document.hidden) resolution.took(performance.now() - started);
+        if (!this.changed) this.sharpenLater(resolution);
+      });
+    }
+    this.draw();
+  }
+
+  private sharpenLater(resolution: Resolution): void {
+    clearTimeout(this.sharpening);
+    if (resolution.sharp === resolution.ratio) return;
+    this.sharpening = setTimeout(() => {
+      this.useRatio(resolution.sharp);
+      this.draw();
+    }, SHARP_AFTER_MS);
+  }
+
+  private useRatio(ratio: number): void {
+    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
   }
 
   /** Resolves after the next drawing, which this asks for. */
@@ -182,8 +289,12 @@ export class Scene {
 
   /** Degrees aside at which the camera stands now, also where the visitor has turned it. */
   private standing(): number {
-    const { x, z } = this.camera.position.clone().sub(this.target);
+    const { x, z } = this.offset();
     return (Math.atan2(x, z) * 180) / Math.PI;
+  }
+
+  private offset(): Vector3 {
+    return this.camera.position.clone().sub(this.target);
   }
 
   private stepGlide(now: number): void {
@@ -193,6 +304,17 @@ export class Scene {
     this.angle = to + (from - to) * (1 - share) ** 3;
     if (share === 1) this.glide = null;
     this.frame();
+    this.invalidate();
+  }
+
+  private stepTurntable(now: number): void {
+    if (!this.turning || this.glide !== null) return;
+    const degrees = (TURNTABLE_SPEED * Math.min(now - this.steppedAt, LONGEST_STEP_MS)) / 1000;
+    this.steppedAt = now;
+    const offset = this.offset().applyAxisAngle(UP, (degrees * Math.PI) / 180);
+    this.camera.position.copy(this.target).add(offset);
+    this.camera.lookAt(this.target);
+    this.framed = false;
     this.invalidate();
   }
 
@@ -209,7 +331,7 @@ export class Scene {
   private turnLights(): void {
     const from = this.camera.position;
     const angle = Math.atan2(from.x - this.target.x, from.z - this.target.z) * LIGHTS_FOLLOW;
-    this.lights.rotation.y = angle;
+    this.lights.group.rotation.y = angle;
     this.scene.environmentRotation.y = angle;
   }
 
@@ -222,8 +344,21 @@ export class Scene {
     controls.addEventListener('start', () => {
       this.framed = false;
       this.glide = null;
+      this.setTurning(false);
     });
     controls.addEventListener('change', () => {
+      this.invalidate();
+    });
+    this.canvas.addEventListener('keydown', (event) => {
+      const to = event.ctrlKey || event.metaKey ? null : steppedOrbit(this.offset(), event.key);
+      if (to === null) return;
+      event.preventDefault();
+      this.framed = false;
+      this.glide = null;
+      this.setTurning(false);
+      // The controls hold it to where a pointer may go, too.
+      this.camera.position.copy(this.target).add(to);
+      controls.update();
       this.invalidate();
     });
     return controls;

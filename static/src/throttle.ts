@@ -33,16 +33,27 @@ export class Throttle {
   }
 }
 
+export interface Debounced<A extends unknown[]> {
+  (...args: A): void;
+  /** Leave out what still waits. */
+  cancel(): void;
+}
+
 /** Run `action` once things have been quiet for `pauseMs`, with the arguments of the last call. */
 export function debounce<A extends unknown[]>(
   action: (...args: A) => void,
   pauseMs: number,
-): (...args: A) => void {
+): Debounced<A> {
   let timer: ReturnType<typeof setTimeout> | undefined;
-  return (...args) => {
+  const later = (...args: A): void => {
     clearTimeout(timer);
     timer = setTimeout(() => {
       action(...args);
     }, pauseMs);
   };
+  return Object.assign(later, {
+    cancel: () => {
+      clearTimeout(timer);
+    },
+  });
 }

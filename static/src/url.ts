@@ -2,6 +2,8 @@
 
 import type { Level } from './level';
 import { LEVELS } from './level';
+import type { LightName } from './light-presets';
+import { isLight } from './light-presets';
 import { isView } from './views';
 
 export interface PageOptions {
@@ -15,6 +17,8 @@ export interface PageOptions {
   still: boolean;
   /** Name of a view, or degrees aside. */
   view: string;
+  /** How the studio is lit. */
+  light: LightName;
   /** Device pixels per CSS pixel; null leaves it to the screen. */
   pixelRatio: number | null;
   /** Level of detail; null leaves it to the device. */
@@ -28,6 +32,7 @@ export function readPageOptions(search: string): PageOptions {
   const session = query.get('session');
   const view = query.get('view') ?? '';
   const level = query.get('level');
+  const light = query.get('light') ?? '';
   const pixelRatio = Number(query.get('dpr'));
   return {
     session: session !== null && /^[a-z0-9_-]{1,64}$/.test(session) ? session : null,
@@ -36,6 +41,7 @@ export function readPageOptions(search: string): PageOptions {
     idle: query.get('idle') !== '0',
     still: query.get('still') === '1',
     view: isView(view) || (view !== '' && Math.abs(Number(view)) <= 180) ? view : 'front',
+    light: isLight(light) ? light : 'studio',
     pixelRatio: pixelRatio > 0 && pixelRatio <= 4 ? pixelRatio : null,
     level: LEVELS.find((name) => name === level) ?? null,
   };

@@ -34,6 +34,49 @@ describe('Commands', () => {
     expect(sent).toEqual([{ type: 'controls', action_units: { AU12: 0.4 }, gaze: { yaw: 10 } }]);
   });
 
+  it('leads through feelings, each with the dominance that goes with it', () => {
+    const lain = { valence: 0.8, arousal: 0.5, dominance: 0.46, anchor: true };
+    viewer.places = [{ name: 'happiness', ...lain }];
+    commands.feel(0.2, 0.1);
+    commands.feel(0.8, 0.5);
+    drawFrame();
+    const { valence, arousal, dominance } = lain;
+    const said = { type: 'emotion', valence, arousal, dominance, fade_in: 0.15, seed: 0 };
+    expect(sent).toEqual([said]);
+    expect(viewer.feeling).toEqual({ valence, arousal });
+  });
+
+  it('undoes a gesture at once, emotions with it', () => {
+    commands.set('action_units', 'AU12', 0.5);
+    commands.set('action_units', 'AU12', 0.8);
+    commands.playEmotion('fear', 1);
+    drawFrame();
+    commands.undo();
+    expect(viewer.emotion).toBe('');
+    expect(sent.slice(-2)).toMatchObject([
+      { replace: true, layer: 'emotion' },
+      { replace: true, layer: 'puppet', action_units: { AU12: 0.8 } },
+    ]);
+    commands.undo();
+    expect(sent.at(-1)).toMatchObject({ replace: true, layer: 'puppet', action_units: {} });
+    expect([viewer.canUndo, viewer.canRedo]).toEqual([false, true]);
+    commands.redo();
+    commands.redo();
+    expect(viewer.emotion).toBe('fear');
+  });
+
+  it('plays units in place of whatever plays', () => {
+    commands.playEmotion('fear', 1);
+    commands.set('jaw', 'pitch', 5);
+    commands.playUnits({ L12: 0.4 });
+    expect(viewer.emotion).toBe('');
+    expect(sent.at(-1)).toMatchObject({
+      replace: true,
+      action_units: { L12: 0.4 },
+      jaw: { pitch: 5 },
+    });
+  });
+
   it('takes a unit apart without losing what it held', () => {
     commands.set('action_units', 'AU12', 0.5);
     drawFrame();

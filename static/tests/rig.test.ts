@@ -107,12 +107,14 @@ describe('readPageOptions', () => {
       idle: true,
       still: false,
       view: 'front',
+      light: 'studio',
       level: null,
       pixelRatio: null,
     });
-    expect(readPageOptions('?session=../x&view=above&dpr=99')).toMatchObject({
+    expect(readPageOptions('?session=../x&view=above&light=moon&dpr=99')).toMatchObject({
       session: null,
       view: 'front',
+      light: 'studio',
       level: null,
       pixelRatio: null,
     });
@@ -120,7 +122,9 @@ describe('readPageOptions', () => {
 
   it('reads what is asked', () => {
     expect(
-      readPageOptions('?session=a_1&rig=paper&bare=1&idle=0&still=1&view=profile&dpr=1'),
+      readPageOptions(
+        '?session=a_1&rig=paper&bare=1&idle=0&still=1&view=profile&light=window&dpr=1',
+      ),
     ).toEqual({
       session: 'a_1',
       rig: 'paper',
@@ -128,6 +132,7 @@ describe('readPageOptions', () => {
       idle: false,
       still: true,
       view: 'profile',
+      light: 'window',
       level: null,
       pixelRatio: 1,
     });

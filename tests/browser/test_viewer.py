@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,75 +14,16 @@ import pytest
 playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
 
 from PIL import Image, ImageChops  # noqa: E402
+from viewer_page import height, settle  # noqa: E402
 
 from service.app import create_app  # noqa: E402
-from service.browser import NoBrowser, chromium  # noqa: E402
 from service.server import running  # noqa: E402
 from service.settings import Settings  # noqa: E402
 from service.starting import service  # noqa: E402
 
 pytestmark = pytest.mark.browser
-TIMEOUT_MS = 120_000
 START_SECONDS = 300.0
 CORNERS = ("ch.L", "ch.R")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[playwright_api.Browser]:
-    """Chromium; without it these tests skip."""
-    try:
-        with chromium() as started:
-            yield started
-    except NoBrowser as error:
-        pytest.skip(str(error))
-
-
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A real server with the built viewer."""
-    folder = tmp_path_factory.mktemp("browser")
-    settings = Settings(data_dir=folder)
-    if not (settings.viewer_dir / "index.html").is_file():
-        pytest.fail("the viewer is not built: run `npm ci && npm run build` in static/")
-    app = create_app(settings)
-    with running(app, settings) as address:
-        # What the pages are timed by is drawing, not the first start's building and compiling.
-        deadline = time.monotonic() + START_SECONDS
-        while not app.state.parts.ready.is_set():
-            assert time.monotonic() < deadline, app.state.parts.stage
-            time.sleep(0.1)
-        yield address
-
-
-@pytest.fixture
-def page(browser: playwright_api.Browser) -> Iterator[playwright_api.Page]:
-    """A small page that fails the test if a script fails."""
-    page = browser.new_page(viewport={"width": 320, "height": 240})
-    page.set_default_timeout(TIMEOUT_MS)
-    errors: list[str] = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    yield page
-    page.close()
-    assert errors == []
-
-
-def height(page: playwright_api.Page, landmark: str) -> float:
-    """Return how high the drawn landmark is now, in metres."""
-    return float(
-        page.evaluate(
-            "name => window.__viewer.drawnVertex(window.__viewer.landmarks[name])[1]", landmark
-        )
-    )
-
-
-def settle(page: playwright_api.Page, after: int = -1) -> int:
-    """Wait until the face sleeps, later than a tick, and is drawn; return its tick."""
-    page.wait_for_function(
-        "t => window.__viewer?.ready && window.__viewer.asleep && window.__viewer.tick > t",
-        arg=after,
-    )
-    page.evaluate("() => window.__viewer.render()")
-    return int(page.evaluate("() => window.__viewer.tick"))
 
 
 def switch_off_idle_life(page: playwright_api.Page, url: str) -> None:
@@ -170,8 +110,8 @@ def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> 
     page.goto(f"{url}/?idle=0")
     settle(page)
     page.get_by_role("button", name="Sean").wait_for()
-    for width, height in ((1280, 800), (1600, 1000)):
-        page.set_viewport_size({"width": width, "height": height})
+    for wide, high in ((1280, 800), (1600, 1000)):
+        page.set_viewport_size({"width": wide, "height": high})
         page.evaluate("() => window.__viewer.render()")
         stage = page.locator("#stage").bounding_box()
         assert stage is not None
@@ -182,16 +122,17 @@ def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> 
             assert box is not None
             assert before["x"] + before["width"] <= box["x"]
             assert box["x"] + box["width"] <= stage["x"] + stage["width"]
-            assert box["y"] + box["height"] <= height
+            assert box["y"] + box["height"] <= high
         footer = page.locator("footer").bounding_box()
         assert footer is not None
-        assert footer["y"] < height - 30
+        assert footer["y"] < high - 30
 
 
 def test_panels_show_what_an_emotion_plays(page: playwright_api.Page, url: str) -> None:
-    page.goto(f"{url}/?idle=0")
+    page.set_viewport_size({"width": 1000, "height": 700})
+    page.goto(f"{url}/?idle=0&dpr=0.5")
     tick = settle(page)
-    page.get_by_role("button", name="Contempt").click(force=True)
+    page.get_by_role("button", name="Contempt").click()
     settle(page, tick)
     dimpler = page.get_by_role("slider", name="AU14")
     playwright_api.expect(dimpler).to_have_attribute(

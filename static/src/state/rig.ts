@@ -6,6 +6,8 @@ export interface ActionUnit {
   source: string;
   /** Moves a side of its own, so that L and R can differ. */
   paired: boolean;
+  /** Words that it is found by: number, name, muscles. */
+  words: string;
 }
 
 export interface ActionUnitGroup {
@@ -36,6 +38,8 @@ export interface Rig {
   muscles: Muscle[];
   emotions: Emotion[];
   tissue: TissueField[];
+  /** What single regions have otherwise than the rest, by `region_laxity.cheek.L`. */
+  regions: Record<string, number>;
   limits: Limits;
 }
 
@@ -105,6 +109,7 @@ export function describeRig(described: Described): Rig {
       source: emotion.source ?? '',
     })),
     tissue: tissueFields(described.tissue),
+    regions: regionValues(described.tissue),
     limits: described.limits,
   };
 }
@@ -120,10 +125,30 @@ function groupUnits(units: Described['action_units'], muscleNames: string[]): Ac
       paired:
         unit.one_sided === true ||
         (Number.isFinite(number) && isPaired(unit.muscles, number, muscleNames)),
+      words: [unit.name, unit.title ?? '', ...namesIn(unit.muscles).map(readable)]
+        .join(' ')
+        .toLowerCase(),
     });
   }
   for (const group of groups) group.units.sort((a, b) => unitNumber(a.name) - unitNumber(b.name));
   return groups.filter((group) => group.units.length > 0);
+}
+
+function namesIn(mapping: unknown): string[] {
+  return typeof mapping === 'object' && mapping !== null ? Object.keys(mapping) : [];
+}
+
+/** The groups with those of their units that have every word of `sought`; a number is a whole one. */
+export function unitsFound(groups: readonly ActionUnitGroup[], sought: string): ActionUnitGroup[] {
+  const words = sought.toLowerCase().split(/\s+/).filter(Boolean);
+  const has = (unit: ActionUnit, word: string): boolean =>
+    /^\d+$/.test(word) ? unitNumber(unit.name) === Number(word) : unit.words.includes(word);
+  return groups
+    .map(({ title, units }) => ({
+      title,
+      units: units.filter((unit) => words.every((word) => has(unit, word))),
+    }))
+    .filter(({ units }) => units.length > 0);
 }
 
 /** Whether a unit has a muscle on either side; where the rig does not say, by the unit's number. */
@@ -186,6 +211,25 @@ export function tissueFields(tissue: Record<string, unknown>): TissueField[] {
       .map((parts) => ({ path: parts.slice(0, -1) as string[], value: parts.at(-1) as unknown }))
       .filter((field): field is TissueField => typeof field.value === 'number' && field.value > 0);
   });
+}
+
+/** What a region may have otherwise than the rest, and what the rest has. */
+export const REGION_FIELDS = [
+  { name: 'region_stiffness', label: 'Stiffness', rest: 1 },
+  { name: 'region_thickness', label: 'Thickness', rest: 1 },
+  { name: 'region_laxity', label: 'Laxity', rest: 0 },
+  { name: 'region_pretension', label: 'Pretension', rest: 1 },
+] as const;
+
+function regionValues(tissue: Record<string, unknown>): Record<string, number> {
+  return Object.fromEntries(
+    REGION_FIELDS.flatMap(({ name }) =>
+      Object.entries((tissue[name] ?? {}) as Record<string, number>).map(([region, value]) => [
+        `${name}.${region}`,
+        value,
+      ]),
+    ),
+  );
 }
 
 /** `{dermis: {stiffness_low: 20}}` for the path of one field: a PATCH that names only that. */

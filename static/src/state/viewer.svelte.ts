@@ -3,7 +3,11 @@
 import type { Held, Merged, Numbers } from '../protocol';
 import type { Group } from './actions';
 import type { AttributeInfo, Recipe } from '../recipe';
+import type { Feeling, Place } from '../feelings';
 import type { Step } from './loading';
+import type { LightName } from '../light-presets';
+import type { Call } from '../retold';
+import type { Theme } from '../theme';
 import type { Rig } from './rig';
 
 /** Someone whose face can be opened. */
@@ -68,21 +72,58 @@ export class ViewerState {
   alive = $state(false);
   /** One sentence about the last thing that went wrong; empty when all is well, or after a while. */
   notice = $state('');
+  /** The notice tells of something that went well. */
+  noticeGood = $state(false);
+  /** The list of keys is open. */
+  keysShown = $state(false);
   emotion = $state('');
   emotionIntensity = $state(1);
+  /** Where the face lies among feelings while a point of them plays. */
+  feeling = $state.raw<Feeling | null>(null);
+  /** Recipes of expressions, and where they lie. */
+  places = $state.raw<Place[]>([]);
+  /** What the face is told to play, without its idle life, as FACS. */
+  facs = $state('');
+  canUndo = $state(false);
+  canRedo = $state(false);
   view = $state('front');
+  light = $state<LightName>('studio');
+  theme = $state<Theme>('auto');
+  /** The muscles are drawn over the face. */
+  inside = $state(false);
+  /** The turntable goes round. */
+  turning = $state(false);
+  /** How many pages and programs watch this face. */
+  watching = $state(1);
+  /** Whether this page may move the face. */
+  role = $state<'read' | 'control'>('control');
+  /** The page came by a link for one face. */
+  guest = $state(false);
+  /** Whether the service asks for a key. */
+  keyed = $state(false);
+  /** What the panels did last; null if nothing yet. */
+  lastCall = $state.raw<Call | null>(null);
   /** What all layers come to together, also those that others write. */
   merged = $state.raw<Merged>({});
   sliders = new Sliders();
+  /** Regions of the skin, whose tissue can be changed by itself. */
+  regions = $state.raw<string[]>([]);
   /** Tissue and muscle numbers that were edited here, by `dermis.stiffness_low` or `muscle.force_scale`. */
   edits = $state<Numbers>({});
   private fading: ReturnType<typeof setTimeout> | undefined;
 
   /** Show a sentence for a while; an empty one takes the last away. */
   say(sentence: string): void {
+    this.noticeGood = false;
     this.notice = sentence;
     clearTimeout(this.fading);
     if (sentence !== '') this.fading = setTimeout(() => (this.notice = ''), NOTICE_MS);
+  }
+
+  /** The same for what went well. */
+  tell(sentence: string): void {
+    this.say(sentence);
+    this.noticeGood = true;
   }
 }
 

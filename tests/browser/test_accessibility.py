@@ -1,0 +1,56 @@
+"""axe finds no serious fault: every tab, bright and dark, on a desk and on a phone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+from viewer_page import settle  # noqa: E402
+
+pytestmark = pytest.mark.browser
+AXE = Path(__file__).parents[2] / "static" / "node_modules" / "axe-core" / "axe.min.js"
+TABS = ("Action units", "Person", "Pose", "Muscles", "Tissue")
+
+
+def faults(page: playwright_api.Page, where: str) -> list[str]:
+    """Return what axe calls serious or critical, each with its place."""
+    found = page.evaluate("() => axe.run(document, {resultTypes: ['violations']})")
+    return [
+        f"{where}: {fault['id']} at {node['target']}: {node['failureSummary']}"
+        for fault in found["violations"]
+        if fault["impact"] in ("serious", "critical")
+        for node in fault["nodes"]
+    ]
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+@pytest.mark.parametrize("size", [(1200, 800), (390, 844)], ids=["desk", "phone"])
+def test_axe_finds_no_serious_fault(
+    page: playwright_api.Page, url: str, scheme: str, size: tuple[int, int]
+) -> None:
+    if not AXE.is_file():
+        pytest.skip("axe-core is not installed: run `npm ci` in static/")
+    page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.goto(f"{url}/?idle=0&level=low&dpr=0.3")
+    settle(page)
+    page.add_script_tag(path=AXE)
+    found: list[str] = []
+    page.get_by_role("button", name="Happiness").click()
+    page.get_by_role("button", name="Key", exact=True).click()
+    for tab in TABS:
+        page.get_by_role("tab", name=tab).click()
+        found += faults(page, tab)
+    page.get_by_role("button", name="Plane").click()
+    page.get_by_role("button", name="Light and stage").click()
+    found += faults(page, "light and stage")
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Share").click()
+    found += faults(page, "share")
+    page.keyboard.press("Escape")
+    page.keyboard.press("?")
+    found += faults(page, "keys")
+    assert found == []

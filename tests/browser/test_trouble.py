@@ -1,0 +1,56 @@
+"""What goes wrong is said, and what can come back does."""
+
+from __future__ import annotations
+
+import pytest
+
+playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+from viewer_page import settle  # noqa: E402
+
+pytestmark = pytest.mark.browser
+PAGE = "?idle=0&level=low&dpr=0.5"
+expect = playwright_api.expect
+
+
+def test_a_browser_without_webgl_is_told(browser: playwright_api.Browser, url: str) -> None:
+    page = browser.new_page()
+    try:
+        page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+        page.goto(f"{url}/{PAGE}")
+        expect(page.locator("#curtain")).to_have_text(
+            "This browser cannot draw the face: it has no WebGL 2."
+        )
+    finally:
+        page.close()
+
+
+def test_a_service_of_another_version_is_told_apart(page: playwright_api.Page, url: str) -> None:
+    def refuse(socket: playwright_api.WebSocketRoute) -> None:
+        socket.close(code=1002, reason="this service speaks risorius.v9 only")
+
+    page.set_viewport_size({"width": 1200, "height": 800})
+    page.route_web_socket("**/stream*", refuse)
+    page.goto(f"{url}/{PAGE}")
+    expect(page.get_by_role("alert")).to_contain_text("risorius.v9 only")
+    expect(page.locator(".status")).to_contain_text("Disconnected")
+
+
+def test_a_lost_network_is_told_and_found_again(page: playwright_api.Page, url: str) -> None:
+    page.set_viewport_size({"width": 1200, "height": 800})
+    sockets: list[playwright_api.WebSocketRoute] = []
+
+    def keep(socket: playwright_api.WebSocketRoute) -> None:
+        socket.connect_to_server()
+        sockets.append(socket)
+
+    page.route_web_socket("**/stream*", keep)
+    page.goto(f"{url}/{PAGE}")
+    settle(page)
+    session = page.evaluate("() => window.__viewer.session")
+    page.context.set_offline(True)
+    sockets[-1].close()
+    expect(page.locator(".status")).to_contain_text("Reconnecting")
+    page.context.set_offline(False)
+    page.wait_for_function("() => window.__viewer.connected")
+    assert page.evaluate("() => window.__viewer.session") == session
