@@ -201,8 +201,11 @@ def read_counts(text: str) -> Counts:
 
 
 @contextmanager
-def own_service() -> Iterator[str]:
+def own_service(settings: Mapping[str, str] | None = None) -> Iterator[str]:
     """Start a service in a process of its own, on a free port, and yield its URL.
+
+    Args:
+        settings: What it has otherwise than usual, by variable.
 
     Raises:
         SoakRefused: If it does not start.
@@ -213,6 +216,7 @@ def own_service() -> Iterator[str]:
             "RISORIUS_DATA_DIR": folder,
             "RISORIUS_API_KEYS": "",
             "RISORIUS_REQUESTS_PER_SECOND": "1000000",
+            **(settings or {}),
         }
         process = subprocess.Popen(
             [sys.executable, "-m", "service", "serve", "--host", "127.0.0.1", "--port", "0"],

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from engine import builtin_rig
 
 from ..version import version
+from .beside_clips import measure_beside_clips
 from .clips import LENGTHS, measure_clips
 from .contest import measure_contest
 from .crowd import measure_crowds
@@ -32,6 +33,8 @@ class Effort(NamedTuple):
         repeats: Samples of each peer.
         commands: Timed through the runner, for each number of faces.
         emotions: Timed from their POST to the frame that shows them.
+        turn: Seconds of each turn without clips, and beside some.
+        turns: Of both.
         clip: Seconds of animation.
         sweeps: Samples of the roof.
         splits: How fine the meshes are split.
@@ -43,14 +46,16 @@ class Effort(NamedTuple):
     repeats: int
     commands: int
     emotions: int
+    turn: float
+    turns: int
     clip: float
     sweeps: int
     splits: tuple[int, ...]
     lengths: tuple[float, ...]
 
 
-FULL = Effort(4.0, 0.1, 7, 300, 120, 4.0, 100, SPLITS, LENGTHS)
-QUICK = Effort(0.2, 0.01, 3, 20, 8, 0.4, 10, SPLITS[:2], (0.5, 1.0))
+FULL = Effort(4.0, 0.1, 7, 300, 120, 10.0, 3, 4.0, 100, SPLITS, LENGTHS)
+QUICK = Effort(0.2, 0.01, 3, 20, 8, 1.0, 1, 0.4, 10, SPLITS[:2], (0.5, 1.0))
 PARTS = (
     "peers",
     "integrators",
@@ -58,6 +63,7 @@ PARTS = (
     "meshes",
     "latency",
     "emotion_to_frame",
+    "beside_clips",
     "output",
     "clips",
     "roof",
@@ -85,7 +91,7 @@ def measure(
         show: Told what is being measured.
 
     Raises:
-        SoakRefused: If the service, which one part takes, does not start.
+        SoakRefused: If the service, which two parts take, does not start.
     """
     effort, load = QUICK if quick else FULL, load_average()
     rig = builtin_rig(rig_name)
@@ -96,6 +102,7 @@ def measure(
         "meshes": lambda: measure_meshes(rig, seconds=effort.seconds / 2, splits=effort.splits),
         "latency": lambda: measure_latencies(rig, commands=effort.commands),
         "emotion_to_frame": lambda: measure_emotion_to_frame(emotions=effort.emotions),
+        "beside_clips": lambda: measure_beside_clips(seconds=effort.turn, turns=effort.turns),
         "output": lambda: measure_output(rig, clip_seconds=effort.clip),
         "clips": lambda: measure_clips(rig, lengths=effort.lengths),
         "roof": lambda: measure_roof(rig, repeats=effort.sweeps),

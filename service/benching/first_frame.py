@@ -21,19 +21,14 @@ from websockets.exceptions import WebSocketException
 
 from ..protocol import RATE, SUBPROTOCOL, decode_frame
 from ..soak_client import Client, SoakRefused, own_service
+from .company import OTHERS, TURN_SECONDS, keep_moving, opened
 from .live import spread
 
-OTHERS = 20
-"""Sessions that are kept awake beside the one that is watched."""
 _WATCHED = 4
 """Sessions that take turns: while one comes to rest the next one is played."""
-_TURN_SECONDS = 1.0
-"""In which each of the others gets a command, whose way takes as long: it never comes to rest."""
 _LONGEST_SECONDS = 30.0
 _EMOTIONS = ("joy", "anger", "surprise", "sadness", "fear", "disgust")
 _WAYS: dict[str, dict[str, float]] = {"at once": {"fade_in": 0.0}, "with its own onset": {}}
-_UNITS = ({"AU12": 1.0, "AU6": 0.8}, {"AU1": 1.0, "AU4": 0.7, "AU15": 0.8}, {"AU26": 1.0})
-"""Expressions far from each other, for those who are to move."""
 
 
 class _Seen(NamedTuple):
@@ -67,11 +62,11 @@ async def _measured(url: str, emotions: int) -> dict[str, Any]:
     client = Client(url)
     try:
         await client.until_ready()
-        others = [await _opened(client) for _ in range(OTHERS)]
-        watched = [await _opened(client) for _ in range(_WATCHED)]
+        others = [await opened(client) for _ in range(OTHERS)]
+        watched = [await opened(client) for _ in range(_WATCHED)]
         async with AsyncExitStack() as stack:
             watches = [await stack.enter_async_context(_Watch(url, face)) for face in watched]
-            moving = asyncio.create_task(_keep_moving(client, others))
+            moving = asyncio.create_task(keep_moving(client, others))
             try:
                 return await _timed(client, watches, emotions)
             finally:
@@ -88,7 +83,7 @@ async def _timed(client: Client, watches: list[_Watch], emotions: int) -> dict[s
     awake = []
     for watch in watches:  # Everything once that is slow the first time.
         await _play(client, watch, 0, {})
-    await asyncio.sleep(_TURN_SECONDS)
+    await asyncio.sleep(TURN_SECONDS)
     before = await client.counts()
     for number in range(emotions):
         watch, turn = watches[number % len(watches)], 1 + number // len(watches)
@@ -132,25 +127,6 @@ async def _play(client: Client, watch: _Watch, turn: int, more: dict[str, float]
         raise SoakRefused(f"an emotion was answered with {answer.status}: {answer.body}.")
     came, tick = await watch.changed(rest, answer.body["tick"])
     return _Seen(answered, came - sent, tick - answer.body["tick"])
-
-
-async def _opened(client: Client) -> str:
-    answer = await client.call("POST", "/api/sessions", {})
-    if answer.status != 201:
-        raise SoakRefused(f"a session was answered with {answer.status}: {answer.body}.")
-    return str(answer.body["id"])
-
-
-async def _keep_moving(client: Client, faces: list[str]) -> None:
-    """Command every face each turn, evenly, so that none falls asleep."""
-    started, number = time.monotonic(), 0
-    while True:
-        face, turn = number % len(faces), number // len(faces)
-        body = {"action_units": _UNITS[(turn + face) % len(_UNITS)], "fade": _TURN_SECONDS}
-        await client.call("PUT", f"/api/sessions/{faces[face]}/controls", body)
-        number += 1
-        due = started + _TURN_SECONDS * number / len(faces)
-        await asyncio.sleep(max(0.0, due - time.monotonic()))
 
 
 class _Watch:

@@ -235,6 +235,27 @@ def _emotion_to_frame(values: dict[str, Any]) -> Section:
     )
 
 
+def _beside_clips(values: dict[str, Any]) -> Section:
+    return Section(
+        "Live faces beside clips",
+        f"{values['others']} sessions that move, in a service in a process of its own, by turns "
+        f"without clips and beside {values['clips']} that are being rendered, each in a process "
+        "of its own that stands back. Late ticks ended more than half a tick after their time; "
+        "ms of the clock, the 99th percentile of a turn, the median of them.",
+        ("faces", "late ticks", "a tick takes, p99", "it is late, p99", "event loop late, p99"),
+        tuple(
+            (
+                row["way"],
+                f"{row['late_ticks']} of {row['ticks']}",
+                f"{row['tick_p99_ms']:.1f}",
+                f"{row['lateness_p99_ms']:.1f}",
+                f"{row['loop_delay_p99_ms']:.1f}",
+            )
+            for row in values["ways"]
+        ),
+    )
+
+
 def _output(values: dict[str, Any]) -> Section:
     return _named(
         "Clips and frames",
@@ -305,6 +326,7 @@ _TABLES: dict[str, Callable[[Any], Section]] = {
     "meshes": _meshes,
     "latency": _latency,
     "emotion_to_frame": _emotion_to_frame,
+    "beside_clips": _beside_clips,
     "output": _output,
     "clips": _clips,
     "roof": _roof,

@@ -99,6 +99,17 @@ def test_clips_are_measured_by_length_and_by_form(figures: Figures) -> None:
     assert basis["bytes"] < exact["bytes"]
 
 
+def test_late_ticks_are_counted_without_clips_and_beside_some(figures: Figures) -> None:
+    found = figures["beside_clips"]
+    assert (found["others"], found["clips"]) == (20, 4)
+    assert [row["way"] for row in found["ways"]] == ["without clips", "beside 4 clips"]
+    for row in found["ways"]:
+        assert row["ticks"] > row["late_ticks"] >= 0
+        assert row["tick_p99_ms"] > 0
+        assert row["lateness_p99_ms"] >= 0
+        assert row["loop_delay_p99_ms"] > 0
+
+
 def test_one_part_is_measured_alone() -> None:
     figures = measure(only=["roof"], quick=True)
     assert "crowds" not in figures
