@@ -50,8 +50,11 @@ export class Commands {
     private readonly viewer: ViewerState,
     private readonly put: (text: string) => void,
     schedule?: (run: () => void) => void,
+    /** Called whenever a control is moved, and when that is sent: what was reported before is old. */
+    private readonly touched: () => void = () => undefined,
   ) {
     this.throttle = new Throttle((groups) => {
+      this.touch();
       this.send(controlsCommand(groups));
     }, schedule);
     this.felt = new Throttle(({ feeling }) => {
@@ -271,6 +274,7 @@ export class Commands {
 
   private touch(): void {
     this.touchedAt = performance.now();
+    this.touched();
   }
 
   private release(layer: Layer): void {

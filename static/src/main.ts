@@ -105,7 +105,14 @@ const connection = new Connection({
     scene.wake();
   },
 });
-const commands = new Commands(viewer, (text) => connection.send(text));
+const commands = new Commands(
+  viewer,
+  (text) => connection.send(text),
+  undefined,
+  () => {
+    takeStateLater.cancel();
+  },
+);
 const timeline = new TimelineState();
 const performer = new Performer(timeline, {
   held: () => commands.held(),

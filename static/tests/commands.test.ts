@@ -34,6 +34,20 @@ describe('Commands', () => {
     expect(sent).toEqual([{ type: 'controls', action_units: { AU12: 0.4 }, gaze: { yaw: 10 } }]);
   });
 
+  it('tells that reports are old when a control moves, and when that is said at last', () => {
+    const touched = vi.fn();
+    const slow = new Commands(
+      viewer,
+      () => undefined,
+      (run) => frames.push(run),
+      touched,
+    );
+    slow.set('action_units', 'AU12', 0.1);
+    expect(touched).toHaveBeenCalledTimes(1);
+    drawFrame();
+    expect(touched).toHaveBeenCalledTimes(2);
+  });
+
   it('leads through feelings, each with the dominance that goes with it', () => {
     const lain = { valence: 0.8, arousal: 0.5, dominance: 0.46, anchor: true };
     viewer.places = [{ name: 'happiness', ...lain }];
