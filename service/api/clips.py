@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from pydantic import ValidationError
-from pydantic.json_schema import SkipJsonSchema
 from starlette.responses import FileResponse, StreamingResponse
 
 from ..bodies import NewClip
@@ -85,7 +84,8 @@ async def render_clip(
     response: Response,
     wait: Annotated[float, Query(ge=0, le=60, allow_inf_nan=False)] = 0.0,
     textured: Textured = True,
-    body: NewClip | SkipJsonSchema[None] = None,
+    # Not `| None`: what is wrong with a timeline would be told of that form too.
+    body: NewClip = None,  # type: ignore[assignment]
 ) -> Any:
     """Queue a clip of a timeline or a tracker's file; with `wait`, answer with its GLB if done."""
     upload: Upload | None = request.scope.get("risorius.upload")
