@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import pickle
-import sys
-from asyncio.subprocess import PIPE, Process
+from asyncio.subprocess import Process
 from contextlib import suppress
 from typing import Any
 
-from .apart import environment
+from .kept_processes import KeptProcesses, end
 from .workbench import LENGTH_BYTES, Made, NotMade
-
-_KEPT_SECONDS = 60.0
-"""For which a process waits for its next order: to start one takes a second or more."""
 
 
 class WorkEnded(Exception):
@@ -24,9 +20,8 @@ class Workshop:
     """Processes of one module, started when they are needed and kept for a while."""
 
     def __init__(self, module: str, *arguments: str, processes: int = 1) -> None:
-        self._command = (sys.executable, "-m", f"{__package__}.{module}", *arguments)
         self._free = asyncio.Semaphore(processes)
-        self._idle: dict[Process, asyncio.TimerHandle] = {}
+        self._processes = KeptProcesses(module, *arguments)
 
     async def make(self, order: object) -> Any:
         """Return what a process makes of `order`; whoever cancels it ends that process.
@@ -36,39 +31,20 @@ class Workshop:
             WorkEnded: If the process ended, for want of memory perhaps.
         """
         async with self._free:
-            process = await self._process()
+            process = await self._processes.take()
             try:
                 answer = await _answered(process, order)
             except BaseException:
-                await _end(process)
+                await end(process)
                 raise
-            timer = asyncio.get_running_loop().call_later(_KEPT_SECONDS, self._let_go, process)
-            self._idle[process] = timer
+            self._processes.keep(process)
         if isinstance(answer, NotMade):
             raise answer.refusal()
         return answer.value
 
     async def stop(self) -> None:
         """End the processes that wait; cancel what is being made first."""
-        for process in list(self._idle):
-            self._idle.pop(process).cancel()
-            await _end(process)
-
-    async def _process(self) -> Process:
-        while self._idle:
-            process, timer = self._idle.popitem()
-            timer.cancel()
-            if process.returncode is None:
-                return process
-        return await asyncio.create_subprocess_exec(
-            *self._command, env=environment(), stdin=PIPE, stdout=PIPE
-        )
-
-    def _let_go(self, process: Process) -> None:
-        """Tell a process that no more comes: it then ends."""
-        self._idle.pop(process, None)
-        assert process.stdin is not None
-        process.stdin.close()
+        await self._processes.stop()
 
 
 async def _answered(process: Process, order: object) -> Made | NotMade:
@@ -84,10 +60,3 @@ async def _answered(process: Process, order: object) -> Made | NotMade:
         ended = await process.wait()
         raise WorkEnded(f"the process that worked on it ended with {ended}") from None
     return answer
-
-
-async def _end(process: Process) -> None:
-    """Kill a process."""
-    with suppress(ProcessLookupError):
-        process.kill()
-    await process.wait()

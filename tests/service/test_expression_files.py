@@ -154,7 +154,7 @@ def test_a_picture_shows_the_expression_as_it_is_asked_for(client: TestClient) -
 
 def _least_niceness(client: TestClient) -> int:
     """Return the least niceness of any thread of the processes that draw pictures."""
-    (process,) = parts_of(client).expressions._pictures._idle
+    (process,) = parts_of(client).expressions._pictures._processes.waiting
     parents: dict[int, list[int]] = {}
     for status in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):  # It has ended since.
@@ -183,7 +183,7 @@ def test_who_closes_the_connection_ends_the_work(tmp_path: Path) -> None:
             asker.sendall(f"GET {path} HTTP/1.1\r\nHost: {host}:{port}\r\n\r\n".encode())
             until(lambda: len(made._under_way._under_way) == 1, seconds=120)
         until(lambda: not made._under_way._under_way)
-        assert not made._faces._idle
+        assert not made._faces._processes.waiting
     kept = (tmp_path / "cache").rglob("*.glb")
     assert [file.name for file in kept if len(file.stem) == TAG_LETTERS] == []
 
@@ -196,27 +196,27 @@ def test_a_process_is_kept_refuses_and_ends_with_who_cancels() -> None:
         workshop = Workshop("expression_process")
         try:
             assert (await workshop.make(ORDER))[:4] == b"glTF"
-            (process,) = workshop._idle
+            (process,) = workshop._processes.waiting
             nobody = FaceOrder(Face("nobody", [], Keyframe()), "low", {})
             with pytest.raises(Refused, match="nobody") as refused:
                 await workshop.make(nobody)
             assert refused.value.status == 422
-            assert list(workshop._idle) == [process]
+            assert list(workshop._processes.waiting) == [process]
             task = asyncio.create_task(workshop.make(ORDER))
-            while workshop._idle:
+            while workshop._processes.waiting:
                 await asyncio.sleep(0)
             task.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await task
             assert process.returncode is not None
             started: list[Process] = []
-            start = workshop._process
+            start = workshop._processes.take
 
             async def noted() -> Process:
                 started.append(await start())
                 return started[-1]
 
-            workshop._process = noted  # type: ignore[method-assign]
+            workshop._processes.take = noted  # type: ignore[method-assign]
             ending = asyncio.create_task(workshop.make(ORDER))
             while not started:
                 await asyncio.sleep(0.01)

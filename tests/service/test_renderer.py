@@ -53,7 +53,7 @@ def play(scene: Scene) -> None:
 
 
 def only(renderer: Renderer) -> Process:
-    (process,) = renderer._idle
+    (process,) = renderer._processes.waiting
     return process
 
 
@@ -92,13 +92,13 @@ def test_what_is_stopped_or_killed_leaves_no_file(tmp_path: Path) -> None:
     async def scene(renderer: Renderer) -> None:
         moving = asyncio.Event()
         started: list[Process] = []
-        make = renderer._process
+        make = renderer._processes.take
 
         async def noted() -> Process:
             started.append(await make())
             return started[-1]
 
-        renderer._process = noted  # type: ignore[method-assign]
+        renderer._processes.take = noted  # type: ignore[method-assign]
         task = asyncio.create_task(renderer.render(long, lambda share: moving.set()))
         await moving.wait()
         task.cancel()
@@ -112,7 +112,7 @@ def test_what_is_stopped_or_killed_leaves_no_file(tmp_path: Path) -> None:
         os.kill(started[1].pid, signal.SIGKILL)
         with pytest.raises(RenderingEnded, match="-9"):
             await task
-        assert not renderer._idle
+        assert not renderer._processes.waiting
 
     play(scene)
     assert list(tmp_path.iterdir()) == []
@@ -128,12 +128,12 @@ def moving(share):
 
 async def body():
     renderer = Renderer()
-    make = renderer._process
+    make = renderer._processes.take
     async def noted():
         process = await make()
         print(process.pid, flush=True)
         return process
-    renderer._process = noted
+    renderer._processes.take = noted
     await renderer.render(order_in(pathlib.Path(sys.argv[1]), seconds=600.0), moving)
 
 asyncio.run(body())

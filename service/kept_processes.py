@@ -1,0 +1,79 @@
+"""Processes that work for the service one order after another, kept for a while between two."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from asyncio.subprocess import PIPE, Process
+from contextlib import suppress
+
+from .apart import environment
+
+_KEPT_SECONDS = 60.0
+"""For which a process waits for its next order: it takes a second or more to start, and 150 MB."""
+_BUFFER_BYTES = 2**16
+"""Bytes of an answer that are read ahead, as asyncio has it."""
+
+
+class KeptProcesses:
+    """Processes of one module, started when they are needed; they read orders from their input."""
+
+    def __init__(self, module: str, *arguments: str, longest_line: int = _BUFFER_BYTES) -> None:
+        """Start none yet.
+
+        Args:
+            module: Of this package, run by its name.
+            arguments: It is run with.
+            longest_line: Bytes of the longest line that it answers with.
+        """
+        self._command = (sys.executable, "-m", f"{__package__}.{module}", *arguments)
+        self._longest_line = longest_line
+        self._idle: dict[Process, asyncio.TimerHandle] = {}
+
+    @property
+    def waiting(self) -> tuple[Process, ...]:
+        """Those that wait for an order."""
+        return tuple(self._idle)
+
+    async def take(self) -> Process:
+        """Return one that waits, or a new one; `keep` or `end` it afterwards.
+
+        Raises:
+            OSError: If none can be started.
+        """
+        while self._idle:
+            process, timer = self._idle.popitem()
+            timer.cancel()
+            if process.returncode is None:
+                return process
+        return await asyncio.create_subprocess_exec(
+            *self._command,
+            env=environment(),
+            stdin=PIPE,
+            stdout=PIPE,
+            limit=self._longest_line,
+        )
+
+    def keep(self, process: Process) -> None:
+        """Have one wait for its next order."""
+        timer = asyncio.get_running_loop().call_later(_KEPT_SECONDS, self._let_go, process)
+        self._idle[process] = timer
+
+    async def stop(self) -> None:
+        """End those that wait."""
+        for process in list(self._idle):
+            self._idle.pop(process).cancel()
+            await end(process)
+
+    def _let_go(self, process: Process) -> None:
+        """Tell a process that no more comes: it then ends."""
+        self._idle.pop(process, None)
+        assert process.stdin is not None
+        process.stdin.close()
+
+
+async def end(process: Process) -> None:
+    """Kill a process."""
+    with suppress(ProcessLookupError):
+        process.kill()
+    await process.wait()
