@@ -20,9 +20,13 @@ TIMEOUT_MS = 120_000
 START_SECONDS = 300.0
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """Chromium; without it these tests skip."""
+    """Chromium; without it these tests skip.
+
+    It goes with its module: while Playwright runs, its event loop counts as running in this thread,
+    and no test that comes after in the same process could run one of its own.
+    """
     try:
         with chromium() as started:
             yield started

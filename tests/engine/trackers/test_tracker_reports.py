@@ -7,10 +7,13 @@ import json
 from tracker_files import openface, read
 
 from engine import TrackReport
+from engine.trackers.statistics import LEAST_ROWS
 
 
 def test_a_report_comes_back_as_it_was() -> None:
-    told = read(openface({"AU12_r": [1.0, 2.0, 3.0], "AU04_r": [1.0] * 3}, 3)).report.to_json()
+    smile = [0.05 * row for row in range(LEAST_ROWS)]
+    file = openface({"AU12_r": smile, "AU04_r": [1.0] * LEAST_ROWS}, LEAST_ROWS)
+    told = read(file).report.to_json()
     assert told["stuck"] == ["AU4"]
     again = TrackReport.from_json(json.loads(json.dumps(told)))
     assert again.to_json() == told
