@@ -9,6 +9,8 @@ import pytest
 # How many faces a machine moves is measured, and tests run beside other work: none is refused but
 # where a test says so.
 os.environ.setdefault("RISORIUS_CAPACITY_SHARE", "1000")
+# As in the service, and before anything imports NumPy: many workers would wait for each other.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
