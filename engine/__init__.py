@@ -56,6 +56,7 @@ from .gltf import (
     rig_to_glb,
     surface_to_glb,
     targets_to_glb,
+    tissue_to_glb,
 )
 from .head import LEVELS, Person, Recipe, people, recipe_attributes
 from .head.textures import head_textures
@@ -256,6 +257,7 @@ __all__ = [
     "texture_names",
     "textures_of",
     "ticks",
+    "tissue_to_glb",
     "track_timeline",
     "unit_basis",
     "unit_key",

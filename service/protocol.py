@@ -99,7 +99,7 @@ def surface_frame(frame: Frame, jaw: JawHinge) -> SurfaceFrame:
         jaw_offset=(offset[0] / 1000.0, offset[1] / 1000.0, offset[2] / 1000.0),
         gaze=(*pose.gaze_left, *pose.gaze_right),
         head=pose.head,
-        steps=_to_grid(frame.displacements),
+        steps=to_grid(frame.displacements),
         head_thrust=pose.head_thrust / 1000.0,
         tongue_thrust=pose.tongue_thrust / 1000.0,
     )
@@ -117,7 +117,7 @@ def _quaternion(rotation: npt.NDArray[np.float64]) -> tuple[float, float, float,
     return (parts[0] / length, parts[1] / length, parts[2] / length, parts[3] / length)
 
 
-def _to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
+def to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
     """Round displacements [mm] to grid steps."""
     if not np.isfinite(displacements).all():
         raise ValueError("a displacement is not finite")

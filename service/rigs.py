@@ -35,6 +35,7 @@ from engine import (
     surface_to_glb,
     texture_names,
     textures_of,
+    tissue_to_glb,
 )
 
 from .access import EVERYTHING, Access
@@ -269,6 +270,10 @@ class Rigs:
         """Return the tissue surface and its map to the drawn surface."""
         key = f"surface-{tag_of(rig, level)}"
         return await self._file(key, lambda: surface_to_glb(rig.at_level(level)))
+
+    async def tissue(self, rig: Rig) -> bytes:
+        """Return what lies under its skin: sheets of nodes, and springs."""
+        return await self._file(f"tissue-{rig.id}", lambda: tissue_to_glb(rig))
 
     def texture_names(self, rig: Rig) -> tuple[str, ...]:
         """Return the files of a rig's textures; none for a head without any."""

@@ -24,7 +24,9 @@ _BYTES = 32
 _MOST_OF_A_KEY = 1024
 _READING = ("GET", "HEAD")
 # What a page needs beside the session itself; which rig is its own, the routes know.
-_READS = re.compile(r"/api/(people|emotions|maps/[^/]+|rigs/[^/]+(/surface\.glb|/textures/[^/]+)?)")
+_READS = re.compile(
+    r"/api/(people|emotions|maps/[^/]+|rigs/[^/]+(/(surface|tissue)\.glb|/textures/[^/]+)?)"
+)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from .face import face_to_glb
 from .played import performance_of
 from .rig import arkit_to_glb, rig_to_glb, targets_to_glb
 from .surface import surface_to_glb
+from .tissue import tissue_to_glb
 
 __all__ = [
     "FORMS",
@@ -17,4 +18,5 @@ __all__ = [
     "rig_to_glb",
     "surface_to_glb",
     "targets_to_glb",
+    "tissue_to_glb",
 ]

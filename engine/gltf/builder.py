@@ -265,6 +265,16 @@ class GlbBuilder:
             targets=cast(Any, [dict(target) for target in targets]),
         )
 
+    def lines(self, places: Array, pairs: Array) -> pygltflib.Primitive:
+        """Return lines between `pairs`, shape (k, 2), of points at `places` [m], shape (n, 3)."""
+        stored = self.accessor(places, target=pygltflib.ARRAY_BUFFER, bounds=True)
+        indices = self.accessor(
+            compact_indices(np.asarray(pairs).ravel()), target=pygltflib.ELEMENT_ARRAY_BUFFER
+        )
+        return pygltflib.Primitive(
+            attributes=pygltflib.Attributes(POSITION=stored), indices=indices, mode=pygltflib.LINES
+        )
+
     def _attribute(self, name: str, values: Array, grid: Grid | None) -> int:
         kind, place = pygltflib.ARRAY_BUFFER, name == "POSITION"
         if grid is None or grid.origin is None:

@@ -8,9 +8,11 @@ from fastapi import APIRouter, Query, Response
 
 from ..components import Parts
 from ..insight_bodies import AnalysisBody, InverseBody, InverseRequest
+from ..layers import encode_layers, layers_frame
 
 router = APIRouter(prefix="/api", tags=["insight"])
 _POLL_SECONDS = 2
+_BYTES = "application/octet-stream"
 Measured = Annotated[bool, Query(description="Whether action units are measured.")]
 Wait = Annotated[
     float,
@@ -55,6 +57,24 @@ async def session_analysis(
             "measuring": {"progress": round(found.measuring, 3), "message": message},
         }
     return AnalysisBody.model_validate(body)
+
+
+@router.get(
+    "/sessions/{session_id}/layers",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "Where dermis, hypodermis and bone are, as docs/stream.md lays it out.",
+            "content": {_BYTES: {"schema": {"type": "string", "format": "binary"}}},
+        }
+    },
+)
+async def session_layers(session_id: str, parts: Parts) -> Response:
+    """Return how far the tissue under the skin is from rest, at the present tick."""
+    session = await parts.sessions.get(session_id)
+    look = await parts.sessions.look(session)
+    data = encode_layers(layers_frame(look.snapshot))
+    return Response(data, media_type=_BYTES, headers={"Cache-Control": "no-store"})
 
 
 @router.post("/rigs/{rig}/inverse")

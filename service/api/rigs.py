@@ -66,3 +66,11 @@ async def surface_glb(
     tag = tag_of(found, level)
     data = b"" if client_has(request, tag) else await parts.rigs.surface(found, level)
     return tagged_glb(request, data, tag)
+
+
+@router.get("/{rig}/tissue.glb", responses=TAGGED, response_class=GlbResponse)
+async def tissue_glb(rig: str, parts: Parts, request: Request) -> Response:
+    """Return the sheets of tissue under the skin at rest, and their springs as lines."""
+    found = await parts.rigs.get(rig)
+    data = b"" if client_has(request, found.id) else await parts.rigs.tissue(found)
+    return tagged_glb(request, data, found.id)
