@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,9 +13,10 @@ from .cache import Arrays, cached_arrays, content_key
 from .channels import GROUPS
 from .dynamics import TABLEAUS, Pull
 from .errors import InvalidValue
-from .force_basis import jaw_rides, moving_pull, rest_basis
+from .force_basis import jaw_rides, moving_pull
 from .muscle import LidMuscle
 from .rates import strides
+from .rest_basis import ground_of, rest_basis
 from .rig import Model, Rig
 from .sources import ENGINE_HASH
 from .stability import largest_frequency, least_substeps
@@ -83,18 +84,7 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
     head, parameters = rig.head, rig.parameters
     tissue = assemble(head, parameters, literal_springs=model.springs == "literal")
     moving = model.forces == "current"
-    slow = kept_for(
-        rig,
-        "assembly",
-        (model,),
-        lambda: {
-            "omega": np.array(largest_frequency(tissue.arrays, tissue.layers.normals)),
-            "basis": rest_basis(
-                head, tissue, rig.muscles, ring=model.sphincter, pressing_only=moving
-            ),
-        },
-    )
-    omega = float(slow["omega"].item())
+    omega = _fastest_mode(rig, tissue)
     if tissue.hardened:
         # Masses hold the phases that the linear view leaves out, to just this frequency.
         omega = max(omega, parameters.mass_frequency)
@@ -108,7 +98,7 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
         rig=rig,
         model=model,
         tissue=tissue,
-        basis=slow["basis"],
+        basis=_forces(rig, tissue, ring=model.sphincter, pressing_only=moving),
         pull=moving_pull(head, tissue, rig.muscles, ring=model.sphincter)
         if moving
         else no_pull(tissue.node_count),
@@ -121,14 +111,54 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
     )
 
 
+def _fastest_mode(rig: Rig, tissue: TissueModel) -> float:
+    """Return the frequency of the fastest mode, rad/s: an edit of a muscle leaves it as it is."""
+    arrays, normals = tissue.arrays, tissue.layers.normals
+    kept = _kept(
+        rig,
+        "frequency",
+        content_key(ENGINE_HASH, *_flat(arrays), normals),
+        lambda: {"omega": np.array(largest_frequency(arrays, normals))},
+    )
+    return float(kept["omega"].item())
+
+
+def _forces(rig: Rig, tissue: TissueModel, *, ring: str, pressing_only: bool) -> FloatArray:
+    """Return the basis of muscle forces: most edits of tissue leave it as it is."""
+    ground = ground_of(rig.head, tissue)
+    strength = tissue.parameters.muscle_strength
+    kept = _kept(
+        rig,
+        "forces",
+        content_key(ENGINE_HASH, ground.key, rig.muscles, strength, ring, pressing_only),
+        lambda: {
+            "basis": rest_basis(
+                ground, rig.muscles, strength=strength, ring=ring, pressing_only=pressing_only
+            )
+        },
+    )
+    return kept["basis"]
+
+
+def _flat(value: object) -> Iterator[object]:
+    """Yield what tuples in tuples hold, one after another."""
+    if isinstance(value, tuple):
+        for part in value:
+            yield from _flat(part)
+    else:
+        yield value
+
+
 def kept_for(rig: Rig, kind: str, parts: tuple[object, ...], build: Callable[[], Arrays]) -> Arrays:
     """Return arrays that follow from a person's rig and `parts`, kept on disk; see `cached_arrays`.
 
     On any other head they are built anew: its id does not tell all that the tissue is made of.
     """
-    if rig.recipe is None:
-        return build()
-    return cached_arrays(kind, content_key(ENGINE_HASH, rig.id, *parts), build, aside=True)
+    return _kept(rig, kind, content_key(ENGINE_HASH, rig.id, *parts), build)
+
+
+def _kept(rig: Rig, kind: str, key: str, build: Callable[[], Arrays]) -> Arrays:
+    return build() if rig.recipe is None else cached_arrays(kind, key, build, aside=True)
 
 
 def _lid_angles(rig: Rig) -> FloatArray:

@@ -36,8 +36,6 @@ from .muscle import (
 )
 from .tissue import TissueModel
 
-QUADRATURE = 4
-"""Points along each side of a quad at which weights are integrated."""
 PACKED = 21
 """Numbers that hold one muscle's geometry in the kernel of mode "current"."""
 
@@ -59,54 +57,6 @@ class Samples:
     points: FloatArray
     normals: FloatArray
     jaw: FloatArray
-
-
-def rest_basis(
-    head: Head,
-    tissue: TissueModel,
-    muscles: Sequence[Muscle],
-    *,
-    ring: str,
-    pressing_only: bool = False,
-) -> FloatArray:
-    """Return each muscle's force on the hypodermis at activation 1, shape (m, 3, n).
-
-    Args:
-        head: The head; its jaw weights tell upper from lower lip.
-        tissue: Its tissue.
-        muscles: In the rig's order; lid muscles give rows of zeros.
-        ring: Profile of sphincters, "ring" or "literal".
-        pressing_only: Leave out what pulls, as mode "current" has it moving with the skin.
-    """
-    n = tissue.node_count
-    basis = np.zeros((len(muscles), 3, n))
-    nodes = Samples(tissue.sheet.points, tissue.layers.normals, head.jaw_weight[:n])
-    grid = _quadrature(tissue, nodes) if tissue.parameters.force_quadrature else None
-    for row, muscle in enumerate(muscles):
-        if isinstance(muscle, LidMuscle):
-            continue
-        samples = nodes if grid is None else grid[0]
-        force = _on_nodes(tissue, grid, press_density(muscle, samples))
-        if not pressing_only:
-            force += _on_nodes(tissue, grid, force_density(muscle, samples, ring=ring))
-        force[tissue.held] = 0.0
-        gain = gain_at(muscle, nodes.points[:, 0])
-        if not isinstance(muscle, AirPressure):  # Air is as strong in a weak face.
-            gain = tissue.parameters.muscle_strength * gain
-        basis[row] = gain * (muscle.force_scale * force.T)
-    return basis
-
-
-def _on_nodes(
-    tissue: TissueModel, grid: tuple[Samples, FloatArray, FloatArray] | None, density: FloatArray
-) -> FloatArray:
-    """Return the force on each node, shape (n, 3), of a density at the grid's samples or nodes."""
-    if grid is None:
-        force = density * tissue.scale[:, None]
-    else:
-        _, shape, area = grid
-        force = _lump(tissue, shape, density * area[:, None])
-    return _smooth(tissue, force, tissue.parameters.force_smoothing)
 
 
 def whole_pull(head: Head, muscles: Sequence[Muscle]) -> FloatArray:
@@ -323,47 +273,3 @@ def _along_skin(muscle: Muscle, direction: FloatArray, normals: FloatArray) -> F
     direction = direction - across * normals
     norm = np.linalg.norm(direction, axis=1, keepdims=True)
     return np.asarray(direction / np.maximum(norm, 1e-9))
-
-
-def _quadrature(tissue: TissueModel, nodes: Samples) -> tuple[Samples, FloatArray, FloatArray]:
-    """Return sample points over every polygon, their bilinear weights, and the area of each."""
-    shape = _bilinear(QUADRATURE)
-    corners = np.where(
-        tissue.sheet.polygons >= 0, tissue.sheet.polygons, tissue.sheet.polygons[:, :1]
-    )
-    points = np.einsum("gk,pkc->pgc", shape, nodes.points[corners]).reshape(-1, 3)
-    normals = np.einsum("gk,pkc->pgc", shape, nodes.normals[corners]).reshape(-1, 3)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    jaw = np.einsum("gk,pk->pg", shape, nodes.jaw[corners]).ravel()
-    reference = tissue.sheet.node_area.mean() / tissue.scale.mean()
-    area = np.repeat(tissue.sheet.polygon_area / (reference * len(shape)), len(shape))
-    return Samples(points, normals, jaw), shape, area
-
-
-def _bilinear(count: int) -> FloatArray:
-    grid = (np.arange(count) + 0.5) / count
-    return np.array(
-        [[(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v] for u in grid for v in grid]
-    )
-
-
-def _lump(tissue: TissueModel, shape: FloatArray, density: FloatArray) -> FloatArray:
-    polygons = tissue.sheet.polygons
-    corners = np.where(polygons >= 0, polygons, polygons[:, :1])
-    share = np.einsum("gk,pgc->pkc", shape, density.reshape(len(polygons), len(shape), 3))
-    force = np.zeros((tissue.node_count, 3))
-    for k in range(4):
-        np.add.at(force, corners[:, k], share[:, k])
-    return force
-
-
-def _smooth(tissue: TissueModel, force: FloatArray, passes: int) -> FloatArray:
-    """Return `force` with its density smoothed over neighbours, its resultant restored."""
-    area = np.maximum(tissue.scale, 0.05)[:, None]
-    for _ in range(passes):
-        density = force / area
-        smoothed = (0.5 * density + 0.5 * (tissue.sheet.neighbor_mean @ density)) * area
-        before = math.sqrt((force.sum(axis=0) ** 2).sum())
-        after = math.sqrt((smoothed.sum(axis=0) ** 2).sum())
-        force = smoothed * (before / after) if before > 1.0e-3 and after > 0.0 else smoothed
-    return force

@@ -19,7 +19,6 @@ from engine.force_basis import (
     moving_pull,
     packed_shape,
     press_density,
-    rest_basis,
     ride_jaw,
     share_of,
 )
@@ -36,6 +35,7 @@ from engine.muscle import (
     mirrored,
     ring_profile,
 )
+from engine.rest_basis import ground_of, rest_basis
 from engine.tissue import assemble
 
 LINEAR = LinearMuscle("m.L", (0.0, 0.0, 0.0), (10.0, 0.0, 0.0), 15.0, 30.0, 1.5, 100.0)
@@ -256,10 +256,12 @@ def test_bellies_press_in_both_force_modes(standard_rig):
     """In mode "current" the pull moves with the skin, and only what presses is a basis."""
     head, muscles = standard_rig.head, standard_rig.muscles
     tissue = Simulator(standard_rig).assembly.tissue
-    whole = rest_basis(head, tissue, muscles, ring="ring")
+    ground = ground_of(head, tissue)
+    strength = tissue.parameters.muscle_strength
+    whole = rest_basis(ground, muscles, strength=strength, ring="ring")
     flat = [replace(m, bulge=0.0) if hasattr(m, "bulge") else m for m in muscles]
-    pulls = rest_basis(head, tissue, flat, ring="ring")
-    presses = rest_basis(head, tissue, muscles, ring="ring", pressing_only=True)
+    pulls = rest_basis(ground, flat, strength=strength, ring="ring")
+    presses = rest_basis(ground, muscles, strength=strength, ring="ring", pressing_only=True)
     named = {
         muscles[row].name.partition(".")[0] for row in range(len(muscles)) if presses[row].any()
     }
