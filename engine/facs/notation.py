@@ -16,7 +16,7 @@ NEUTRAL = "0"
 
 _SHOWN = 60
 """Most characters of an unreadable string that are repeated."""
-_UNIT = r"(?P<side>[LRTB])?(?P<prefix>AU|M)?0*(?P<number>[1-9]\d?)"
+_UNIT = r"(?P<side>[LRTB])?(?P<prefix>A[UD]|M)?0*(?P<number>[1-9]\d?)"
 _NUMBER = r"\d{1,2}(?:\.\d{1,40})?(?:E-?\d{1,3})?|\.\d{1,40}"
 _TERM = re.compile(rf"{_UNIT}(?:(?P<letter>[A-E*])|:(?P<intensity>{_NUMBER}))?", re.ASCII)
 _NAME = re.compile(_UNIT, re.ASCII)
@@ -56,9 +56,9 @@ class Term:
 def parse_facs(text: str, scale: str = "linear") -> tuple[Term, ...]:
     """Read a FACS string such as "1C+2C+L4B+R12D+26".
 
-    Spaces and lower case are allowed, as is "AU12" for "12". A letter is read by `scale`; a unit
-    without letter or with `*` is `UNSCORED`; "12:0.37" is an intensity between letters. `NEUTRAL`
-    is a face without units.
+    Spaces and lower case are allowed, as are "AU12" for "12" and "AD19", as descriptors are often
+    written, for "19". A letter is read by `scale`; a unit without letter or with `*` is `UNSCORED`;
+    "12:0.37" is an intensity between letters. `NEUTRAL` is a face without units.
 
     Raises:
         InvalidNotation: With the part that cannot be read.
@@ -118,6 +118,8 @@ def format_facs(terms: Iterable[Term], scale: str = "linear") -> str:
 
 def split_side(key: str) -> tuple[str, str]:
     """Return ("AU12", "L") for "L12", ("AU12", "") for "AU12", "12" or "au12".
+
+    "AD19", an action descriptor, is "AU19".
 
     Raises:
         InvalidNotation: If `key` does not name an action unit.

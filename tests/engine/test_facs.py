@@ -90,6 +90,7 @@ def test_spaces_case_and_long_names_are_allowed():
         Term("AU22", "B", 1.0),
         Term("M59", "", 0.6),
     )
+    assert parse_facs("AD19D + lad33") == (Term("AU19", "", 0.8), Term("AU33", "L", 0.6))
     assert parse_facs("12 : .5 + 4:1e-2") == (Term("AU12", "", 0.5), Term("AU4", "", 0.01))
 
 
@@ -116,6 +117,7 @@ def test_sides_are_read_from_keys():
     assert split_side("l12") == ("AU12", "L")
     assert split_side("RAU4") == ("AU4", "R")
     assert split_side("t28") == ("AU28", "T")
+    assert split_side("AD19") == ("AU19", "")
     with pytest.raises(InvalidNotation, match="smile"):
         split_side("smile")
 
