@@ -17,15 +17,15 @@ const NETWORK = {
     '**/protocol',
     '**/protocol.ts',
   ],
-  message: 'Drawing files know no network: main.ts hands them plain data.',
+  message: 'Drawing files know no network: app/ hands them plain data.',
 };
 const SOCKETS = {
   group: ['**/connection', '**/connection.ts', '**/api', '**/api.ts'],
-  message: 'Panels and state act through the Actions that main.ts gives them.',
+  message: 'Panels and state act through the Actions that app/ gives them.',
 };
 const DRAWING = {
   group: ['**/face', '**/face.ts', '**/scene', '**/scene.ts', '**/materials', '**/materials.ts'],
-  message: 'Only main.ts knows both the drawing and the rest.',
+  message: 'Only app/ knows both the drawing and the rest.',
 };
 const MAIN = { group: ['**/main', '**/main.ts'], message: 'main.ts is imported by nobody.' };
 const PANELS = {

@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-
-playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-from viewer_page import settle  # noqa: E402
+from playwright import sync_api as playwright_api
+from viewer_page import settle
 
 pytestmark = pytest.mark.browser
 AXE = Path(__file__).parents[2] / "static" / "node_modules" / "axe-core" / "axe.min.js"

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-mediapipe = pytest.importorskip("mediapipe", reason="MediaPipe, an optional detector, is missing")
+from engine import builtin_rig, people
 
-from engine import builtin_rig, people  # noqa: E402
+mediapipe = pytest.importorskip("mediapipe", reason="MediaPipe, an optional detector, is missing")
 
 pytestmark = [pytest.mark.browser, pytest.mark.filterwarnings("ignore")]
 SIDES = "0,25,-25,50,-50"

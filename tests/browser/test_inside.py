@@ -5,11 +5,9 @@ from __future__ import annotations
 import io
 
 import pytest
-
-playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-from PIL import Image, ImageChops  # noqa: E402
-from viewer_page import settle  # noqa: E402
+from PIL import Image, ImageChops
+from playwright import sync_api as playwright_api
+from viewer_page import settle
 
 pytestmark = pytest.mark.browser
 

@@ -6,10 +6,8 @@ import re
 from typing import Any
 
 import pytest
-
-playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-from viewer_page import settle, until  # noqa: E402
+from playwright import sync_api as playwright_api
+from viewer_page import settle, until
 
 pytestmark = pytest.mark.browser
 PAGE = "?idle=0&level=low&dpr=0.5"

@@ -8,11 +8,9 @@ import shlex
 from pathlib import Path
 
 import pytest
-
-playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-from PIL import Image  # noqa: E402
-from viewer_page import height, settle, until  # noqa: E402
+from PIL import Image
+from playwright import sync_api as playwright_api
+from viewer_page import height, settle, until
 
 pytestmark = pytest.mark.browser
 PAGE = "?idle=0&level=low&dpr=0.5"

@@ -8,10 +8,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-
-playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-from viewer_page import settle  # noqa: E402
+from playwright import sync_api as playwright_api
+from viewer_page import settle
 
 pytestmark = pytest.mark.browser
 PAGE = "?idle=0&level=low&dpr=0.5"

@@ -10,16 +10,14 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from PIL import Image, ImageChops
+from playwright import sync_api as playwright_api
+from viewer_page import height, settle
 
-playwright_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-from PIL import Image, ImageChops  # noqa: E402
-from viewer_page import height, settle  # noqa: E402
-
-from service.app import create_app  # noqa: E402
-from service.server import running  # noqa: E402
-from service.settings import Settings  # noqa: E402
-from service.starting import service  # noqa: E402
+from service.app import create_app
+from service.server import running
+from service.settings import Settings
+from service.starting import service
 
 pytestmark = pytest.mark.browser
 START_SECONDS = 300.0

@@ -1,4 +1,4 @@
-// What the panels can ask for. main.ts does it; the panels know no network and no drawing.
+// What the panels can ask for. the files of app/ do it; the panels know no network and no drawing.
 
 import type { LightName } from '../light-presets';
 import type { Theme } from '../theme';

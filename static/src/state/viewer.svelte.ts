@@ -120,6 +120,11 @@ export class ViewerState {
     if (sentence !== '') this.fading = setTimeout(() => (this.notice = ''), NOTICE_MS);
   }
 
+  /** Say what an error says. */
+  sayWhy(error: unknown): void {
+    this.say(error instanceof Error ? error.message : 'That did not work.');
+  }
+
   /** The same for what went well. */
   tell(sentence: string): void {
     this.say(sentence);

@@ -1,0 +1,119 @@
+// Which session the page is on: found or opened, with a key or a ticket, and handed on as a link.
+
+import type { Api, SessionInfo } from '../api';
+import { ApiError } from '../api';
+import { starting } from '../state/loading';
+import type { ViewerState } from '../state/viewer.svelte';
+import type { PageOptions } from '../url';
+
+/** Where the key is kept: as long as the tab is open, and for this page only. */
+const KEY_PLACE = 'risorius.key';
+const START_POLL_MS = 500;
+
+export class Opening {
+  /** The session to attach to; empty to open one. */
+  session: string;
+
+  constructor(
+    private readonly page: PageOptions,
+    private readonly api: Api,
+    private readonly viewer: ViewerState,
+    /** The page asks who is there: nothing may lie over the question. */
+    private readonly onLocked: () => void,
+  ) {
+    this.session = page.session ?? '';
+    api.key = window.sessionStorage.getItem(KEY_PLACE) ?? '';
+  }
+
+  /** Whether the page came by a link for one face. */
+  get isGuest(): boolean {
+    return this.api.ticket !== '' && this.api.key === '';
+  }
+
+  /** Whom the page is about to show: a person by name, anybody else as a face. */
+  get who(): string {
+    const person = this.viewer.people.find(({ name }) => name === this.viewer.rigName);
+    return person?.label ?? 'the face';
+  }
+
+  /** Find the session, or open one if there is none any more, and give the address of its stream. */
+  locate(): Promise<string> {
+    return this.find().catch((error: unknown) => this.askForKey(error));
+  }
+
+  useKey(key: string): void {
+    this.api.key = key;
+    window.sessionStorage.setItem(KEY_PLACE, key);
+  }
+
+  /** A link for others. Where no key is asked for, the page's own address moves the face. */
+  async link(role: 'read' | 'control'): Promise<string> {
+    // A link makes no other links: it is handed on as it is.
+    if (this.isGuest) return window.location.href;
+    if (role === 'read' || this.api.key !== '') return this.api.linkTo(this.session, role);
+    const address = new URL(document.baseURI);
+    address.search = new URLSearchParams({ session: this.session }).toString();
+    return address.href;
+  }
+
+  /** Count who watches, where somebody looks at this page. */
+  async countViewers(): Promise<void> {
+    if (this.page.bare || document.hidden || this.viewer.status !== 'open') return;
+    const known = await this.api.session(this.session).catch(() => null);
+    this.viewer.watching = known?.viewers ?? this.viewer.watching;
+  }
+
+  private async find(): Promise<string> {
+    const { api, viewer } = this;
+    if (this.session !== '') {
+      const known = await api.session(this.session).catch((error: unknown) => {
+        if (error instanceof ApiError && error.status === 404) return null;
+        throw error;
+      });
+      if (known !== null) {
+        await api.takeTicket(known.id);
+        return this.streamOf(known);
+      }
+      if (this.isGuest) throw new ApiError(404, 'This face was closed.');
+    }
+    viewer.step = { words: `Preparing ${this.who}`, share: null };
+    void this.tellOfStart();
+    const opened = await api.openSession(viewer.rigName, viewer.alive);
+    this.session = opened.id;
+    const address = new URL(window.location.href);
+    address.searchParams.set('session', this.session);
+    address.searchParams.set('rig', viewer.rigName);
+    window.history.replaceState(null, '', address);
+    await api.takeTicket(this.session);
+    return this.streamOf(opened);
+  }
+
+  private streamOf(info: SessionInfo): string {
+    return info.stream === undefined
+      ? this.api.streamAddress(info.id)
+      : this.api.address(info.stream).replace(/^http/, 'ws');
+  }
+
+  /** Where the service wants to know who asks, ask them; the error goes on. */
+  private askForKey(error: unknown): never {
+    if (error instanceof ApiError && error.status === 401) {
+      this.viewer.locked = this.isGuest
+        ? 'This link is no longer valid. Ask for another one, or give a key.'
+        : this.api.key === ''
+          ? 'This service asks for a key.'
+          : 'This key is not known here.';
+      this.onLocked();
+    }
+    throw error;
+  }
+
+  /** Say what the service is at for as long as it starts: a first start takes a minute. */
+  private async tellOfStart(): Promise<void> {
+    for (;;) {
+      const doing = await this.api.starting();
+      if (doing === '' || this.viewer.surfaceReady) return;
+      this.viewer.step = starting(doing);
+      await new Promise((again) => setTimeout(again, START_POLL_MS));
+    }
+  }
+}

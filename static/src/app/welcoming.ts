@@ -1,0 +1,52 @@
+// A hello, first or later: the face on the stage may be another, and so may its rig.
+
+import type { Api } from '../api';
+import type { Level } from '../level';
+import { atLevel } from '../level';
+import type { Hello } from '../protocol';
+import type { ViewerState } from '../state/viewer.svelte';
+import { curtain } from './curtain';
+import type { OnStage } from './on-stage';
+import type { Opening } from './opening';
+import type { Told } from './told';
+
+export class Welcoming {
+  /** Asks of a new face what the one before it did, so that two rigs can be compared. */
+  resume: (() => void) | null = null;
+
+  constructor(
+    private readonly api: Api,
+    private readonly viewer: ViewerState,
+    private readonly opening: Opening,
+    private readonly stage: OnStage,
+    private readonly told: Told,
+    private readonly level: Level,
+  ) {}
+
+  async take(hello: Hello): Promise<void> {
+    const { api, viewer, opening, stage, told } = this;
+    viewer.session = opening.session = hello.session;
+    viewer.locked = '';
+    viewer.keyed = api.key !== '' || api.ticket !== '';
+    void opening.countViewers();
+    if (viewer.surfaceReady) curtain.open();
+    if (hello.role !== undefined) {
+      viewer.role = hello.role;
+      document.body.classList.toggle('watching', hello.role === 'read');
+    }
+    viewer.guest = opening.isGuest;
+    if (hello.state !== undefined) told.take(hello.state);
+    const address = atLevel(api.place(hello.surface), this.level);
+    try {
+      // A live edit moves the session to another rig on the same surface; only a true hello may change it.
+      if (hello.type === 'hello' && address !== stage.address) await stage.show(address);
+      else if (!stage.loading) viewer.step = null;
+      if (hello.rig !== told.rigId) await told.showRig(hello.rig, hello.type === 'hello');
+      this.resume?.();
+      this.resume = null;
+    } catch (error) {
+      viewer.step = null;
+      viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
+    }
+  }
+}
