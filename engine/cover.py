@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from .arrays import BoolArray, FloatArray, IntArray
 from .frame import Frame
@@ -69,6 +68,8 @@ def crossings(
         vertices: Of the surface, mm, shape (d, 3).
         triangles: Of the surface, counter-clockwise from outside, shape (t, 3).
     """
+    from scipy.spatial import cKDTree  # Here: a start does without.
+
     length = float(np.linalg.norm(way, axis=1).max())
     beside = (vertices < start.min(axis=0) - length) | (vertices > start.max(axis=0) + length)
     triangles = triangles[~beside.any(axis=1)[triangles].all(axis=1)]

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
-from scipy.sparse.linalg import eigsh
 
 from .arrays import FloatArray
 from .dynamics import Tissue, volume_gradients
@@ -69,6 +68,8 @@ def _prism_matrix(tissue: Tissue) -> sp.csr_array:
 
 def largest_frequency(tissue: Tissue, normals: FloatArray) -> float:
     """Return ω_max, rad/s, of the free nodes by Lanczos iteration from a fixed start."""
+    from scipy.sparse.linalg import eigsh  # Here: a start does without.
+
     free = np.repeat(tissue.inverse_mass > 0.0, 3)
     root = np.sqrt(np.repeat(tissue.inverse_mass, 3)[free])
     matrix = stiffness_matrix(tissue, normals)[free][:, free]

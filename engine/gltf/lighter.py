@@ -12,7 +12,6 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..arrays import FloatArray, IntArray
 from ..head.head import Part
@@ -83,6 +82,8 @@ def _thinned(part: Part, thinning: Thinning) -> Part:
 
 def _strands(part: Part) -> list[IntArray]:
     """Return the vertices of each strand, in order."""
+    from scipy.sparse.csgraph import connected_components  # Here: a start does without.
+
     edges = part.triangles[:, [0, 1, 1, 2]].reshape(-1, 2)
     count = len(part.vertices)
     graph = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..arrays import FloatArray
 from ..frame import Pose
@@ -44,11 +43,15 @@ class RigidMotion:
 
 def quaternions(rotations: Sequence[FloatArray]) -> FloatArray:
     """Return rotations, shape (3, 3) each, as x, y, z, w with w >= 0, shape (n, 4)."""
+    from scipy.spatial.transform import Rotation  # Here: a start does without.
+
     return np.asarray(Rotation.from_matrix(np.stack(rotations)).as_quat(canonical=True))
 
 
 def turned(yaw: float, pitch: float, roll: float = 0.0) -> FloatArray:
     """Return the rotation, shape (3, 3), of a gaze or a head, degrees."""
+    from scipy.spatial.transform import Rotation  # Here: a start does without.
+
     if not (yaw or pitch or roll):
         return np.eye(3)
     angles = [yaw, -pitch, -roll]

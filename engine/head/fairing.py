@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from ..arrays import FloatArray, IntArray
 from .cage import Cage
@@ -59,6 +58,8 @@ def fair(points: FloatArray, topology: Topology, trusts: Sequence[float]) -> Flo
     The plate is |D L X|^2 with the Laplacian L weighted by inverse edge length, whose weights are
     taken anew from the last solution, and D zero on the boundary.
     """
+    from scipy.sparse.linalg import splu  # Here: a start does without.
+
     weight = np.asarray(trusts)
     free = sp.diags_array((~topology.boundary_vertices).astype(float))
     identity = sp.eye_array(len(points))

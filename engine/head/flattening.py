@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from ..arrays import FloatArray, IntArray
 from .topology import next_corners
@@ -63,6 +62,8 @@ def _embedded(
     outer: int,
 ) -> FloatArray:
     """Return Tutte's embedding on a circle; each hole inside is filled by one vertex more."""
+    from scipy.sparse.linalg import splu  # Here: a start does without.
+
     # The highest point of the front of the midline goes to the top.
     loop = loops[outer]
     top = np.argmin(np.abs(vertices[loop, 0]) * 1e6 - vertices[loop, 1] - vertices[loop, 2])
@@ -164,6 +165,8 @@ def _proxy_minimum(
     jacobians: FloatArray, gradient: list[sp.csr_array], areas: FloatArray, flat: FloatArray
 ) -> FloatArray:
     """Return where the weighted distance of all Jacobians to their rotations is least."""
+    from scipy.sparse.linalg import splu  # Here: a start does without.
+
     u, sigma, vt = np.linalg.svd(jacobians)
     rotation = u @ vt
     near_one = np.abs(sigma - 1) < 1e-6

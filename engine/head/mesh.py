@@ -6,8 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import breadth_first_order
-from scipy.spatial import cKDTree
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..cache import cached_arrays
@@ -211,6 +209,8 @@ def wound_alike(faces: IntArray, topology: Topology) -> IntArray:
 
 def _flips(first: IntArray, second: IntArray, disagree: BoolArray, count: int) -> BoolArray:
     """Return which triangles to turn, walking from the first one over pairs of neighbours."""
+    from scipy.sparse.csgraph import breadth_first_order  # Here: a start does without.
+
     # An entry of 2 tells "disagree" from 1, "agree"; 0 would be no neighbour at all.
     value = 1 + disagree.astype(float)
     graph = sp.csr_array((value, (first, second)), shape=(count, count))
@@ -236,6 +236,8 @@ def _held(points: FloatArray, topology: Topology) -> BoolArray:
 
 def _mirror(points: FloatArray) -> IntArray:
     """Return each point's mirror image in the plane x = middle, -1 where there is none."""
+    from scipy.spatial import cKDTree  # Here: a start does without.
+
     middle = (points[:, 0].min() + points[:, 0].max()) / 2
     reflected = points * [-1.0, 1.0, 1.0] + [2 * middle, 0.0, 0.0]
     found = cKDTree(points).query(reflected)

@@ -8,13 +8,16 @@ interpolation).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import SuperLU, splu
 
 from ..arrays import FloatArray, IntArray
 from .topology import Topology
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import SuperLU
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,6 +246,8 @@ def limit_surface(cage: Level, refinements: int = 2) -> Limit:
     Interpolation (Halstead et al. 1993): the control points are solved for. One step of
     subdivision first makes every face a quad, so that one limit mask serves all vertices.
     """
+    from scipy.sparse.linalg import splu  # Here: a start does without.
+
     levels = [cage]
     for _ in range(refinements):
         levels.append(refine(levels[-1]))

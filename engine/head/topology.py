@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 
 from ..arrays import BoolArray, FloatArray, IntArray
 
@@ -116,6 +115,8 @@ def components(topology: Topology) -> IntArray:
 
 
 def _pieces(edges: IntArray, size: int) -> IntArray:
+    from scipy.sparse.csgraph import connected_components  # Here: a start does without.
+
     graph = sp.coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(size, size))
     _, label = connected_components(graph, directed=False)
     return np.asarray(label)

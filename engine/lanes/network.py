@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 import scipy.sparse as sp
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..arrays import Float32Array, FloatArray, IntArray
+from ..cache import cached_arrays, content_key
 from ..dynamics import IndexArray, Tissue
 from .vector import WIDTH
 
@@ -92,16 +93,27 @@ class Order(NamedTuple):
 
 
 def order_columns(tissue: Tissue) -> Order:
-    """Return the columns in an order in which neighbours are near."""
+    """Return the columns in an order in which neighbours are near.
+
+    It is kept on disk: finding it takes little, but the library that does takes part of a start.
+    """
     springs, count = tissue.springs, tissue.rest.shape[1]
     n = count // 3
     a, b = springs.first % n, springs.second % n
-    joined = sp.csr_array((np.ones(2 * len(a)), (np.r_[a, b], np.r_[b, a])), shape=(n, n))
-    columns = reverse_cuthill_mckee(sp.csr_array(joined), symmetric_mode=True).astype(np.int64)
+    key = content_key("columns", scipy.__version__, n, a, b)
+    columns = cached_arrays("columns", key, lambda: {"columns": _nearby(n, a, b)})["columns"]
     places = np.empty(n, np.int64)
     places[columns] = np.arange(n)
     node = np.arange(count)
     return Order(columns, places, 3 * places[node % n] + node // n)
+
+
+def _nearby(n: int, a: IntArray, b: IntArray) -> IntArray:
+    """Return the columns 0 to n - 1, joined from `a` to `b`, in such an order."""
+    from scipy.sparse.csgraph import reverse_cuthill_mckee  # Here: a start does without.
+
+    joined = sp.csr_array((np.ones(2 * len(a)), (np.r_[a, b], np.r_[b, a])), shape=(n, n))
+    return reverse_cuthill_mckee(sp.csr_array(joined), symmetric_mode=True).astype(np.int64)
 
 
 def arrange(tissue: Tissue, order: Order) -> Network:

@@ -9,7 +9,6 @@ x lies between the two.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..arrays import FloatArray
 
@@ -19,6 +18,8 @@ HALF_TURN = np.diag([1.0, -1.0, -1.0])
 
 def turns_of(angles: FloatArray) -> FloatArray:
     """Return rotations, shape (n, 3, 3), of yaw, pitch and roll [degrees], shape (n, 3)."""
+    from scipy.spatial.transform import Rotation  # Here: a start does without.
+
     signed = angles * np.array([1.0, -1.0, -1.0])
     return np.asarray(Rotation.from_euler("YXZ", signed, degrees=True).as_matrix())
 

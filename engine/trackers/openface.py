@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..arrays import FloatArray
 from ..errors import InvalidNotation, InvalidTrack
@@ -137,6 +136,8 @@ def head_turns(radians: FloatArray) -> FloatArray:
 
     OpenFace's `Utilities::Euler2RotationMatrix` is R = Rx Ry Rz in the camera's axes.
     """
+    from scipy.spatial.transform import Rotation  # Here: a start does without.
+
     turns = np.asarray(Rotation.from_euler("XYZ", radians).as_matrix())
     return np.asarray(HALF_TURN @ turns @ HALF_TURN)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ..geometry import unit
@@ -78,6 +77,8 @@ def on_forehead(points: FloatArray) -> BoolArray:
 
 def _roots(groups: list[Cards], skin: DrawnSurface) -> IntArray:
     """Return the skin vertex that each vertex of the cards rides: the nearest, or a still one."""
+    from scipy.spatial import cKDTree  # Here: a start does without.
+
     middles = np.concatenate([cards.lines.reshape(-1, 3) for cards in groups])
     still = np.argmax(skin.vertices[:, 1])
     nearest = cKDTree(skin.vertices).query(middles)[1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray
 from ..geometry import triangle_areas, unit
@@ -31,6 +30,8 @@ class Scalp:
 
     def __init__(self, skin: DrawnSurface, recipe: Recipe) -> None:
         """Prepare `skin` for the hair of `recipe`."""
+        from scipy.spatial import cKDTree  # Here: a start does without.
+
         self.recipe = recipe
         self._vertices = skin.vertices if skin.reference is None else skin.reference
         self._normals = skin.normals
@@ -84,6 +85,8 @@ class Scalp:
 
 def _apart(points: FloatArray, reach: FloatArray) -> BoolArray:
     """Return which points to keep, shape (n,), so that none lies within a kept one's reach."""
+    from scipy.spatial import cKDTree  # Here: a start does without.
+
     kept = np.ones(len(points), dtype=bool)
     tree = cKDTree(points)
     for index, near in enumerate(tree.query_ball_point(points, reach)):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ..geometry import unit
@@ -62,6 +61,8 @@ def strand_part(
         skin: The drawn skin; each strand rides the vertex nearest its root.
         root_light: Brightness of the roots relative to the tips.
     """
+    from scipy.spatial import cKDTree  # Here: a start does without.
+
     vertices, normals, triangles = _ribbons(strands)
     count, points = strands.lines.shape[:2]
     per_strand = 2 * points - 1
@@ -103,6 +104,8 @@ class FrontView:
 
     def __init__(self, skin: DrawnSurface, region: BoolArray) -> None:
         """Prepare the triangles of `skin` that are marked in `region`, shape (t,), and face +z."""
+        from scipy.spatial import cKDTree  # Here: a start does without.
+
         a, b, c = (skin.vertices[skin.triangles[:, corner]] for corner in range(3))
         facing = np.cross(b - a, c - a)
         chosen = region & (facing[:, 2] > 0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...arrays import FloatArray, IntArray
 from ..anatomy import smoothstep
@@ -114,6 +113,8 @@ def _back_edge(skin: DrawnSurface, front: FloatArray) -> tuple[FloatArray, IntAr
 
     It is where the skin comes nearest to the ball.
     """
+    from scipy.spatial import cKDTree  # Here: a start does without.
+
     center = EYE_CENTER * [np.sign(front[:, 0].mean()), 1.0, 1.0]
     height = np.linalg.norm(skin.vertices - center, axis=1) - EYE_RADIUS
     margin = np.flatnonzero((height > 0) & (height < 4) & (skin.vertices[:, 2] > center[2] - 1))

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.spatial import cKDTree
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ..anatomy import smoothstep
@@ -72,6 +71,8 @@ class Surface:
 
     def depth(self, *names: str) -> FloatArray:
         """Return how deep each vertex lies inside some regions [mm], negative outside."""
+        from scipy.spatial import cKDTree  # Here: a start does without.
+
         inside = self.inside(*names)
         i, j = self.edges.T
         border = inside[i] != inside[j]
