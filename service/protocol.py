@@ -1,5 +1,7 @@
 """The binary frames of the stream, version 1: a face's surface as displacements from rest.
 
+This is the kind that everybody is sent; `packed.py` has the smaller one for those who ask.
+
 A frame stands alone: whoever reads only this one has the whole face. All numbers are little
 endian; lengths are in metres, as in `surface.glb`, whose vertex order the frame follows.
 
@@ -20,7 +22,7 @@ endian; lengths are in metres, as in `surface.glb`, whose vertex order the frame
 | after them | 2 float32 | only with bit 1: thrust of head and of tongue in metres |
 
 A zero byte pads the bitmap where the displacements would start at an odd offset. A vertex whose
-bit is not set is at rest, to half a step. `docs/stream.md` has a reader of 40 lines.
+bit is not set is at rest, to half a step. `docs/stream.md` has a reader in plain Python.
 """
 
 from __future__ import annotations
@@ -127,28 +129,100 @@ def to_grid(displacements: npt.NDArray[np.float64]) -> npt.NDArray[np.int16]:
     return steps.astype(np.int16)
 
 
-def encode_frame(frame: SurfaceFrame) -> bytes:
-    """Return the bytes of `frame`, as laid out above."""
-    moved = (frame.steps[:, 0] | frame.steps[:, 1] | frame.steps[:, 2]) != 0
-    steps = frame.steps.astype("<i2", copy=False)
+@dataclass(frozen=True)
+class Head:
+    """What the first 68 bytes of a frame say, of either kind.
+
+    Attributes:
+        kind, version: Which kind of frame it is.
+        flags: Its bits.
+        numbers: Tick, then jaw, gaze and head as in `SurfaceFrame`, 15 of them.
+        vertices: Vertex count.
+        last: The uint16 at byte 66, which each kind has for itself.
+    """
+
+    kind: int
+    version: int
+    flags: int
+    numbers: tuple[float, ...]
+    vertices: int
+    last: int
+
+    def frame(
+        self, steps: npt.NDArray[np.int16], thrusts: tuple[float, float] = (0.0, 0.0)
+    ) -> SurfaceFrame:
+        """Return the frame with its displacements [grid steps], shape (vertices, 3)."""
+        tick, *rest = self.numbers
+        return SurfaceFrame(
+            tick=int(tick),
+            asleep=bool(self.flags & FLAG_ASLEEP),
+            jaw_quaternion=(rest[0], rest[1], rest[2], rest[3]),
+            jaw_offset=(rest[4], rest[5], rest[6]),
+            gaze=(rest[7], rest[8], rest[9], rest[10]),
+            head=(rest[11], rest[12], rest[13]),
+            steps=steps,
+            head_thrust=thrusts[0],
+            tongue_thrust=thrusts[1],
+        )
+
+
+HEAD_BYTES = _HEADER.size
+
+
+def encode_head(frame: SurfaceFrame, kind: int, version: int, last: int) -> tuple[bytes, bytes]:
+    """Return the first 68 bytes of a frame, and its thrusts: eight bytes, none where both are 0."""
     thrusts = (frame.head_thrust, frame.tongue_thrust)
     flags = (FLAG_ASLEEP if frame.asleep else 0) | (FLAG_THRUSTS if any(thrusts) else 0)
-    header = _HEADER.pack(
-        KIND_SURFACE,
-        FRAME_VERSION,
+    head = _HEADER.pack(
+        kind,
+        version,
         flags,
         frame.tick & 0xFFFFFFFF,
         *frame.jaw_quaternion,
         *frame.jaw_offset,
         *frame.gaze,
         *frame.head,
-        len(moved),
-        int(np.count_nonzero(moved)),
+        len(frame.steps),
+        last,
     )
+    return head, _THRUSTS.pack(*thrusts) if flags & FLAG_THRUSTS else b""
+
+
+def decode_head(data: bytes) -> Head:
+    """Return what the first 68 bytes of a frame say.
+
+    Raises:
+        MalformedFrame: If there are fewer.
+    """
+    if len(data) < HEAD_BYTES:
+        raise MalformedFrame(f"a frame has at least {HEAD_BYTES} bytes, this one {len(data)}")
+    kind, version, flags, *numbers, vertices, last = _HEADER.unpack_from(data)
+    return Head(kind, version, flags, tuple(numbers), vertices, last)
+
+
+def decode_thrusts(data: bytes, head: Head, start: int) -> tuple[tuple[float, float], int]:
+    """Return the thrusts of head and tongue [m] that byte `start` begins, if any, and their end.
+
+    Raises:
+        MalformedFrame: If the frame is over before.
+    """
+    if not head.flags & FLAG_THRUSTS:
+        return (0.0, 0.0), start
+    end = start + _THRUSTS.size
+    if len(data) < end:
+        raise MalformedFrame(f"{len(data)} bytes, but the header says that thrusts end at {end}")
+    of_head, of_tongue = _THRUSTS.unpack_from(data, start)
+    return (of_head, of_tongue), end
+
+
+def encode_frame(frame: SurfaceFrame) -> bytes:
+    """Return the bytes of `frame`, as laid out above."""
+    moved = (frame.steps[:, 0] | frame.steps[:, 1] | frame.steps[:, 2]) != 0
+    steps = frame.steps.astype("<i2", copy=False)
+    head, thrusts = encode_head(frame, KIND_SURFACE, FRAME_VERSION, int(np.count_nonzero(moved)))
     bitmap = np.packbits(moved, bitorder="little").tobytes()
     padding = b"\0" * (len(bitmap) % 2)
-    tail = _THRUSTS.pack(*thrusts) if flags & FLAG_THRUSTS else b""
-    return header + bitmap + padding + steps.compress(moved, axis=0).tobytes() + tail
+    return head + bitmap + padding + steps.compress(moved, axis=0).tobytes() + thrusts
 
 
 def decode_frame(data: bytes) -> SurfaceFrame:
@@ -158,32 +232,21 @@ def decode_frame(data: bytes) -> SurfaceFrame:
         MalformedFrame: If `data` is of another kind or version, or its length is not what its
             header says.
     """
-    if len(data) < _HEADER.size:
-        raise MalformedFrame(f"a frame has at least {_HEADER.size} bytes, this one {len(data)}")
-    kind, version, flags, tick, *numbers, vertices, moved_count = _HEADER.unpack_from(data)
-    if (kind, version) != (KIND_SURFACE, FRAME_VERSION):
-        raise MalformedFrame(f"kind {kind} version {version} is not surface version 1")
+    head = decode_head(data)
+    if (head.kind, head.version) != (KIND_SURFACE, FRAME_VERSION):
+        raise MalformedFrame(f"kind {head.kind} version {head.version} is not surface version 1")
+    vertices, moved_count = head.vertices, head.last
     bitmap_size = (vertices + 7) // 8
-    start = _HEADER.size + bitmap_size + bitmap_size % 2
+    start = HEAD_BYTES + bitmap_size + bitmap_size % 2
     end = start + 6 * moved_count
-    size = end + (_THRUSTS.size if flags & FLAG_THRUSTS else 0)
+    size = end + (_THRUSTS.size if head.flags & FLAG_THRUSTS else 0)
     if len(data) != size:
         raise MalformedFrame(f"{len(data)} bytes, but the header says {size}")
-    thrusts = _THRUSTS.unpack_from(data, end) if flags & FLAG_THRUSTS else (0.0, 0.0)
-    bitmap = np.frombuffer(data, np.uint8, bitmap_size, _HEADER.size)
+    thrusts, _ = decode_thrusts(data, head, end)
+    bitmap = np.frombuffer(data, np.uint8, bitmap_size, HEAD_BYTES)
     moved = np.unpackbits(bitmap, count=vertices, bitorder="little").astype(bool)
     if np.count_nonzero(moved) != moved_count:
         raise MalformedFrame("the bitmap does not have as many bits set as vertices moved")
     steps = np.zeros((vertices, 3), np.int16)
     steps[moved] = np.frombuffer(data, "<i2", 3 * moved_count, start).reshape(-1, 3)
-    return SurfaceFrame(
-        tick=tick,
-        asleep=bool(flags & FLAG_ASLEEP),
-        jaw_quaternion=(numbers[0], numbers[1], numbers[2], numbers[3]),
-        jaw_offset=(numbers[4], numbers[5], numbers[6]),
-        gaze=(numbers[7], numbers[8], numbers[9], numbers[10]),
-        head=(numbers[11], numbers[12], numbers[13]),
-        steps=steps,
-        head_thrust=thrusts[0],
-        tongue_thrust=thrusts[1],
-    )
+    return head.frame(steps, thrusts)

@@ -22,7 +22,8 @@ from .clashes import clashes
 from .commands import held_from_json, held_to_json
 from .errors import Busy, NotFound, QuotaExceeded, refused_by_engine
 from .keeping import Keeper
-from .protocol import GRID_METRES, RATE, SUBPROTOCOL, encode_frame, surface_frame
+from .outgoing import Outgoing
+from .protocol import GRID_METRES, RATE, SUBPROTOCOL
 from .rigs import Rigs
 from .runner import Look, Move, Runner, Tick, View
 from .store import SessionRow, Store
@@ -66,6 +67,7 @@ class Session:
         speaking: Layer and owner of what is played at its time, and the tick at which that ends.
         unsaved: Whether it holds anything that the store was not given yet.
         kept_tick: Its tick as the store was given it last.
+        outgoing: Its latest frame as bytes.
     """
 
     id: str
@@ -87,25 +89,23 @@ class Session:
     unsaved: bool = False
     kept_tick: int = 0
     state_changed: bool = False
-    _encoded: bytes | None = None
+    outgoing: Outgoing = field(default_factory=Outgoing)
 
     @property
     def shift(self) -> int:
         """Which part of the sessions it is tended with."""
         return hash(self.id) % _SHIFTS
 
-    @property
-    def encoded(self) -> bytes:
-        """The latest frame as bytes: encoded once, for every viewer."""
-        if self._encoded is None:
-            self._encoded = encode_frame(surface_frame(self.frame, self.rig.jaw))
-        return self._encoded
+    def frame_for(self, viewer: Viewer) -> bytes:
+        """Return the latest frame as bytes, in the form that a viewer asked for."""
+        if viewer.packed:
+            return self.outgoing.packed(self.frame, self.rig.jaw, viewer.base)
+        return self.outgoing.plain(self.frame, self.rig.jaw)
 
     def show(self, frame: Frame) -> None:
         """Take a newer frame and wake the viewers."""
         self.state_changed |= frame.asleep and not self.frame.asleep
         self.frame = frame
-        self._encoded = None
         for viewer in self.viewers:
             viewer.offer_frame()
 
@@ -446,8 +446,8 @@ class Sessions:
         """Return the face with all of its tissue."""
         return await self._runner.look(session.id)
 
-    def watch(self, session: Session) -> Viewer:
-        """Add a viewer.
+    def watch(self, session: Session, *, packed: bool = False) -> Viewer:
+        """Add a viewer, of packed frames if it asked for them.
 
         Raises:
             Busy: If the session has as many as are allowed.
@@ -463,7 +463,7 @@ class Sessions:
         if len(session.viewers) >= self._viewer_limit:
             message = f"at most {self._viewer_limit} viewers watch one session"
             raise Busy("too_many_viewers", message)
-        viewer = Viewer()
+        viewer = Viewer(packed=packed)
         session.viewers.add(viewer)
         return viewer
 
@@ -573,7 +573,7 @@ class Sessions:
 
     async def _each_second(self, session: Session) -> None:
         for viewer in session.viewers:
-            viewer.repeat_frame()
+            viewer.repeat_frame(session.frame.tick, asleep=session.frame.asleep)
         alone = 0.0 if session.viewers else time.time() - session.used
         if session.idle is not None and not session.paused and alone > _UNWATCHED_SECONDS:
             session.paused = True

@@ -21,7 +21,7 @@ from .bodies import MESSAGE, AckMessage, ControlsMessage, IdleMessage
 from .commands import controls_keyframe
 from .components import Components, parts_of
 from .emotions import play_emotion
-from .errors import Refused, error_body, json_response
+from .errors import Refused, Unprocessable, error_body, json_response
 from .explaining import explain
 from .guard import KEY_SUBPROTOCOL
 from .idle import idle_of
@@ -30,6 +30,7 @@ from .sessions import Session
 from .viewers import Viewer
 
 router = APIRouter()
+_FRAMES = ("plain", "packed")
 _PROTOCOL_ERROR = 1002
 _NOT_ALLOWED = 1008
 _TOO_BIG = 1009
@@ -47,7 +48,7 @@ async def stream(socket: WebSocket, session_id: str) -> None:
     try:
         parts = await parts_of(socket.scope)
         session = await parts.sessions.get(session_id)
-        viewer = parts.sessions.watch(session)
+        viewer = parts.sessions.watch(session, packed=_packed(socket))
     except Refused as refused:
         await socket.send_denial_response(
             json_response(refused.body(), status=refused.status, headers=refused.headers)
@@ -58,7 +59,8 @@ async def stream(socket: WebSocket, session_id: str) -> None:
         await socket.accept(subprotocol=SUBPROTOCOL if offered else None)
         view = await parts.sessions.view(session)
         role = socket.scope["risorius.access"].role
-        await _send_event(socket, {**session.hello(view), "role": role})
+        frames = "packed" if viewer.packed else "plain"
+        await _send_event(socket, {**session.hello(view), "role": role, "frames": frames})
         await _converse(socket, parts, session, viewer)
     except (WebSocketDisconnect, Refused):
         pass  # The viewer left, or the session was closed between two lines above.
@@ -67,6 +69,19 @@ async def stream(socket: WebSocket, session_id: str) -> None:
             ending.cancel()
         parts.sessions.leave(session, viewer)
         parts.metrics.frames_skipped.inc(viewer.skipped)
+
+
+def _packed(socket: WebSocket) -> bool:
+    """Tell whether a socket asks for packed frames.
+
+    Raises:
+        Unprocessable: If it asks for others than there are.
+    """
+    asked = socket.query_params.get("frames", _FRAMES[0])
+    if asked not in _FRAMES:
+        message = f"frames is {asked!r}; expected one of: {', '.join(_FRAMES)}"
+        raise Unprocessable("unknown_frames", message, known=_FRAMES)
+    return asked == "packed"
 
 
 def _end_with(access: Access, viewer: Viewer) -> asyncio.TimerHandle | None:
@@ -101,7 +116,7 @@ async def _send(socket: WebSocket, parts: Components, session: Session, viewer: 
             await socket.close(*viewer.ended)
             return
         if viewer.take_frame(session.frame.tick):
-            data = session.encoded
+            data = session.frame_for(viewer)
             await socket.send_bytes(data)
             metrics.frames_sent.inc()
             metrics.frame_bytes.inc(len(data))

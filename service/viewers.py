@@ -13,9 +13,20 @@ _WINDOW = 2
 
 
 class Viewer:
-    """What waits for one viewer. A slow one misses frames and delays nobody."""
+    """What waits for one viewer. A slow one misses frames and delays nobody.
 
-    def __init__(self) -> None:
+    Attributes:
+        packed: Whether it asked for packed frames.
+        base: Tick of the frame that it was sent before the last one it was allowed, None for none.
+        skipped: Frames that it missed.
+        ended: Code and reason with which its socket is to be closed.
+    """
+
+    def __init__(self, *, packed: bool = False) -> None:
+        self.packed = packed
+        self.base: int | None = None
+        self._sent: int | None = None
+        self._drawn: int | None = None
         self._news = asyncio.Event()
         self._events: deque[Mapping[str, Any]] = deque(maxlen=_EVENTS_KEPT)
         self._frame_waits = True
@@ -31,10 +42,17 @@ class Viewer:
         self._frame_waits = True
         self._news.set()
 
-    def repeat_frame(self) -> None:
-        """Send the latest frame again, whatever was lost or not acknowledged."""
+    def repeat_frame(self, tick: int, *, asleep: bool) -> None:
+        """Have it be whole again, whatever was lost or not acknowledged.
+
+        The latest frame of a face that is `asleep`, that of `tick`, is sent again, unless the
+        viewer has said that it drew it; where the face is awake the next one comes, and whole.
+        """
+        if asleep and self._drawn == tick:
+            return
         self._unread.clear()
-        self._frame_waits = True
+        self._sent = None
+        self._frame_waits |= asleep
         self._news.set()
 
     def offer(self, event: Mapping[str, Any]) -> None:
@@ -48,6 +66,7 @@ class Viewer:
     def acknowledge(self, tick: int) -> None:
         """Note that the viewer has drawn the frame of `tick`."""
         self._acknowledges = True
+        self._drawn = tick
         while self._unread and (tick - self._unread[0]) % 2**32 < 2**31:
             self._unread.popleft()
         self._news.set()
@@ -73,5 +92,6 @@ class Viewer:
         if not self._frame_waits or (self._acknowledges and len(self._unread) >= _WINDOW):
             return False
         self._frame_waits = False
+        self.base, self._sent = self._sent, tick
         self._unread.append(tick)
         return True

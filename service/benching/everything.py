@@ -20,6 +20,7 @@ from .machine import described, load_average, machine, niceness
 from .meshes import SPLITS, measure_meshes
 from .output import measure_output
 from .roof import measure_roof
+from .stream import measure_stream
 
 Show = Callable[[str], None]
 
@@ -36,6 +37,7 @@ class Effort(NamedTuple):
         turn: Seconds of each turn without clips, and beside some.
         turns: Of both.
         clip: Seconds of animation.
+        lively: Seconds of lively motion that are streamed.
         sweeps: Samples of the roof.
         splits: How fine the meshes are split.
         lengths: Of the clips whose cost is compared [s].
@@ -49,13 +51,14 @@ class Effort(NamedTuple):
     turn: float
     turns: int
     clip: float
+    lively: float
     sweeps: int
     splits: tuple[int, ...]
     lengths: tuple[float, ...]
 
 
-FULL = Effort(4.0, 0.1, 7, 300, 120, 10.0, 3, 4.0, 100, SPLITS, LENGTHS)
-QUICK = Effort(0.2, 0.01, 3, 20, 8, 1.0, 1, 0.4, 10, SPLITS[:2], (0.5, 1.0))
+FULL = Effort(4.0, 0.1, 7, 300, 120, 10.0, 3, 4.0, 20.0, 100, SPLITS, LENGTHS)
+QUICK = Effort(0.2, 0.01, 3, 20, 8, 1.0, 1, 0.4, 1.5, 10, SPLITS[:2], (0.5, 1.0))
 PARTS = (
     "peers",
     "integrators",
@@ -65,6 +68,7 @@ PARTS = (
     "emotion_to_frame",
     "beside_clips",
     "output",
+    "stream",
     "clips",
     "roof",
 )
@@ -104,6 +108,7 @@ def measure(
         "emotion_to_frame": lambda: measure_emotion_to_frame(emotions=effort.emotions),
         "beside_clips": lambda: measure_beside_clips(seconds=effort.turn, turns=effort.turns),
         "output": lambda: measure_output(rig, clip_seconds=effort.clip),
+        "stream": lambda: measure_stream(rig, seconds=effort.lively),
         "clips": lambda: measure_clips(rig, lengths=effort.lengths),
         "roof": lambda: measure_roof(rig, repeats=effort.sweeps),
     }

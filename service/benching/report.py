@@ -2,33 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from typing import Any
 
 from rich.console import Group
 from rich.table import Table
 
 from ..tables import markdown_table
-
-Row = Sequence[object]
-
-
-@dataclass(frozen=True)
-class Section:
-    """One table.
-
-    Attributes:
-        title: Its heading.
-        note: What one has to know to read it.
-        head: Title of each column; the first is of names, the others of numbers.
-        rows: Its cells.
-    """
-
-    title: str
-    note: str
-    head: tuple[str, ...]
-    rows: tuple[Row, ...]
+from .section import Row, Section
+from .stream import stream_section
 
 
 def about(figures: dict[str, Any]) -> str:
@@ -328,6 +310,7 @@ _TABLES: dict[str, Callable[[Any], Section]] = {
     "emotion_to_frame": _emotion_to_frame,
     "beside_clips": _beside_clips,
     "output": _output,
+    "stream": stream_section,
     "clips": _clips,
     "roof": _roof,
 }

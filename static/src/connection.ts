@@ -1,7 +1,8 @@
 // Keeps one WebSocket to a face alive: finds it, reconnects with growing pauses, hands on the newest frame.
 
 import type { Hello, StateMessage, SurfaceFrame, ErrorMessage, WarningMessage } from './protocol';
-import { ackCommand, decodeFrame, readMessage, SUBPROTOCOL } from './protocol';
+import { FrameReader, PACKED_QUERY, standsAlone } from './packed';
+import { ackCommand, readMessage, SUBPROTOCOL } from './protocol';
 
 export type Status = 'connecting' | 'open' | 'waiting' | 'closed';
 
@@ -44,7 +45,9 @@ export class Connection {
   private openedAt = 0;
   /** Counts attempts, so that an answer to an abandoned one is not acted upon. */
   private attempt = 0;
-  private newest: ArrayBuffer | null = null;
+  /** Frames since the last one that was taken, from the newest on that says all of a face. */
+  private waiting: ArrayBuffer[] = [];
+  private reader = new FrameReader();
 
   constructor(private readonly options: ConnectionOptions) {}
 
@@ -72,10 +75,9 @@ export class Connection {
    * Acknowledging when a frame is used, not when it comes, paces the server to what is really drawn.
    */
   takeFrame(): SurfaceFrame | null {
-    if (this.newest === null) return null;
-    const frame = decodeFrame(this.newest);
-    this.newest = null;
-    this.send(ackCommand(frame.tick));
+    let frame: SurfaceFrame | null = null;
+    for (const each of this.waiting.splice(0)) frame = this.reader.read(each) ?? frame;
+    if (frame !== null) this.send(ackCommand(frame.tick));
     return frame;
   }
 
@@ -93,8 +95,9 @@ export class Connection {
 
   private open(url: string): void {
     const make = this.options.open ?? ((address) => new WebSocket(address, SUBPROTOCOL) as Socket);
-    const socket = make(url);
+    const socket = make(url + (url.includes('?') ? '&' : '?') + PACKED_QUERY);
     this.socket = socket;
+    this.reader = new FrameReader();
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => {
       this.openedAt = Date.now();
@@ -110,8 +113,9 @@ export class Connection {
 
   private receive(data: string | ArrayBuffer): void {
     if (typeof data !== 'string') {
-      const wasEmpty = this.newest === null;
-      this.newest = data;
+      const wasEmpty = this.waiting.length === 0;
+      if (standsAlone(data)) this.waiting = [];
+      this.waiting.push(data);
       if (wasEmpty) this.options.onFrameReady();
       return;
     }
@@ -124,7 +128,7 @@ export class Connection {
 
   private lost(event: CloseEvent): void {
     this.socket = null;
-    this.newest = null;
+    this.waiting = [];
     if (event.code === CLOSE_PROTOCOL_ERROR) {
       this.options.onStatus(
         'closed',
@@ -154,7 +158,7 @@ export class Connection {
     this.timer = null;
     const socket = this.socket;
     this.socket = null;
-    this.newest = null;
+    this.waiting = [];
     this.openedAt = 0;
     if (socket === null) return;
     socket.onopen = socket.onmessage = socket.onclose = null;

@@ -57,37 +57,38 @@ export interface SurfaceFrame {
 
 export class ProtocolError extends Error {}
 
+/** Bytes that every kind of frame begins with. */
+export const HEAD_BYTES = OFFSET.bitmap;
+
+/** What the first bytes of a frame say. */
+export type FrameHead = Omit<
+  SurfaceFrame,
+  'headThrust' | 'tongueThrust' | 'moved' | 'displacements'
+> & {
+  /** What the two bytes at the end of it say, which each kind has for itself. */
+  last: number;
+};
+
 /**
- * Read one binary frame.
- * @throws ProtocolError when the bytes are not a surface frame of a known version.
+ * Read the bytes that every kind of frame begins with.
+ * @throws ProtocolError when there are too few, or they are of another kind or version.
  */
-export function decodeFrame(buffer: ArrayBuffer): SurfaceFrame {
-  if (buffer.byteLength < OFFSET.bitmap) {
+export function decodeHead(buffer: ArrayBuffer, ofKind: number, ofVersion: number): FrameHead {
+  if (buffer.byteLength < HEAD_BYTES) {
     throw new ProtocolError(
-      `A frame has at least ${OFFSET.bitmap} bytes, this one ${buffer.byteLength}.`,
+      `A frame has at least ${HEAD_BYTES} bytes, this one ${buffer.byteLength}.`,
     );
   }
   const view = new DataView(buffer);
   const kind = view.getUint8(OFFSET.kind);
   const version = view.getUint8(OFFSET.version);
-  if (kind !== KIND_SURFACE || version !== VERSION) {
+  if (kind !== ofKind || version !== ofVersion) {
     throw new ProtocolError(
-      `Frame of kind ${kind}, version ${version}; this viewer reads kind ${KIND_SURFACE}, version ${VERSION}. Reload the page.`,
-    );
-  }
-  const vertexCount = view.getUint16(OFFSET.vertexCount, true);
-  const movedCount = view.getUint16(OFFSET.movedCount, true);
-  const start = displacementsStart(vertexCount);
-  const end = start + movedCount * BYTES_PER_DISPLACEMENT;
-  const flags = view.getUint16(OFFSET.flags, true);
-  const thrusts = (flags & FLAG_THRUSTS) !== 0;
-  const least = end + (thrusts ? BYTES_OF_THRUSTS : 0);
-  if (buffer.byteLength < least) {
-    throw new ProtocolError(
-      `${movedCount} moved vertices of ${vertexCount} need ${least} bytes, the frame has ${buffer.byteLength}.`,
+      `Frame of kind ${kind}, version ${version}; this viewer reads kind ${ofKind}, version ${ofVersion}. Reload the page.`,
     );
   }
   const float = (index: number): number => view.getFloat32(OFFSET.jawQuaternion + 4 * index, true);
+  const flags = view.getUint16(OFFSET.flags, true);
   return {
     kind,
     version,
@@ -98,10 +99,32 @@ export function decodeFrame(buffer: ArrayBuffer): SurfaceFrame {
     jawOffset: [float(4), float(5), float(6)],
     gaze: [float(7), float(8), float(9), float(10)],
     head: [float(11), float(12), float(13)],
+    vertexCount: view.getUint16(OFFSET.vertexCount, true),
+    last: view.getUint16(OFFSET.movedCount, true),
+  };
+}
+
+/**
+ * Read one binary frame.
+ * @throws ProtocolError when the bytes are not a surface frame of a known version.
+ */
+export function decodeFrame(buffer: ArrayBuffer): SurfaceFrame {
+  const { last: movedCount, ...head } = decodeHead(buffer, KIND_SURFACE, VERSION);
+  const start = displacementsStart(head.vertexCount);
+  const end = start + movedCount * BYTES_PER_DISPLACEMENT;
+  const thrusts = (head.flags & FLAG_THRUSTS) !== 0;
+  const least = end + (thrusts ? BYTES_OF_THRUSTS : 0);
+  if (buffer.byteLength < least) {
+    throw new ProtocolError(
+      `${movedCount} moved vertices of ${head.vertexCount} need ${least} bytes, the frame has ${buffer.byteLength}.`,
+    );
+  }
+  const view = new DataView(buffer);
+  return {
+    ...head,
     headThrust: thrusts ? view.getFloat32(end, true) : 0,
     tongueThrust: thrusts ? view.getFloat32(end + 4, true) : 0,
-    vertexCount,
-    moved: readBitmap(new Uint8Array(buffer, OFFSET.bitmap), vertexCount, movedCount),
+    moved: readBitmap(new Uint8Array(buffer, OFFSET.bitmap), head.vertexCount, movedCount),
     displacements: new Int16Array(buffer, start, movedCount * 3),
   };
 }

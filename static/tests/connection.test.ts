@@ -38,10 +38,13 @@ class FakeSocket implements Socket {
   }
 }
 
+function golden(name: string): ArrayBuffer {
+  const url = new URL(`../../tests/golden/frames/${name}.bin`, import.meta.url);
+  return new Uint8Array(readFileSync(url)).buffer;
+}
+
 function frame(tick: number): ArrayBuffer {
-  const data = new Uint8Array(
-    readFileSync(new URL('../../tests/golden/frames/rest.bin', import.meta.url)),
-  ).buffer;
+  const data = golden('rest');
   new DataView(data).setUint32(4, tick, true);
   return data;
 }
@@ -182,6 +185,38 @@ describe('Connection', () => {
     expect(connection.takeFrame()?.tick).toBe(9);
     expect(last().sent).toEqual(['{"type":"ack","tick":9}']);
     expect(connection.takeFrame()).toBeNull();
+  });
+
+  it('asks for packed frames, and reads each, since the next one says what changed', async () => {
+    const open = vi.fn(() => {
+      const socket = new FakeSocket();
+      sockets.push(socket);
+      return socket;
+    });
+    const connection = connect({ open });
+    await settled();
+    expect(open).toHaveBeenLastCalledWith('ws://face?frames=packed');
+    last().opens();
+    last().receives(golden('packed-whole'));
+    last().receives(golden('packed-change'));
+    expect(connection.takeFrame()).toMatchObject({ tick: 3602, tongueThrust: 0.015625 });
+    expect(last().sent).toEqual(['{"type":"ack","tick":3602}']);
+  });
+
+  it('says nothing of a change whose base it never had, until a whole frame comes', async () => {
+    const connection = connect();
+    await settled();
+    last().opens();
+    last().receives(golden('packed-whole'));
+    last().breaks();
+    await vi.advanceTimersByTimeAsync(1000);
+    last().opens();
+    last().receives(golden('packed-change'));
+    expect(connection.takeFrame()).toBeNull();
+    expect(last().sent).toEqual([]);
+    last().receives(golden('packed-change'));
+    last().receives(golden('packed-whole'));
+    expect(connection.takeFrame()?.tick).toBe(3600);
   });
 
   it('does not send into a socket that is not open', async () => {

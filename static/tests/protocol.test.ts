@@ -3,6 +3,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { describe, expect, it } from 'vitest';
+import { FrameReader } from '../src/packed';
 import {
   controlsCommand,
   decodeFrame,
@@ -18,6 +19,8 @@ const GRID = 2e-5;
 
 interface Golden {
   kind: number;
+  /** Name of the frame that it says the changes of; only where it is told by one. */
+  base?: string;
   version: number;
   flags: number;
   tick: number;
@@ -42,14 +45,17 @@ const names = readdirSync(FRAMES)
   .filter((file) => file.endsWith('.bin'))
   .map((file) => file.replace('.bin', ''));
 
-describe('decodeFrame', () => {
-  it('has golden frames to read', () => {
-    expect(names.length).toBeGreaterThanOrEqual(3);
+describe('frames', () => {
+  it('are there to read, of both kinds', () => {
+    const kinds = names.map((name) => new Uint8Array(bytes(`${name}.bin`))[0]);
+    expect(new Set(kinds)).toEqual(new Set([1, 2]));
   });
 
-  it.each(names)('reads %s as the service wrote it', (name) => {
+  it.each(names)('are read as the service wrote them: %s', (name) => {
     const golden = JSON.parse(readFileSync(`${FRAMES}${name}.json`, 'utf8')) as Golden;
-    const frame = decodeFrame(bytes(`${name}.bin`));
+    const reader = new FrameReader();
+    if (golden.base !== undefined) reader.read(bytes(`${golden.base}.bin`));
+    const frame = reader.read(bytes(`${name}.bin`))!;
     expect(frame.kind).toBe(golden.kind);
     expect(frame.version).toBe(golden.version);
     expect(frame.flags).toBe(golden.flags);
@@ -81,15 +87,15 @@ describe('decodeFrame', () => {
     expect(worst).toBeLessThan(1e-9);
   });
 
-  it('refuses a frame of another version, and one that is cut short', () => {
-    const other = bytes(`${names[0]!}.bin`);
+  it('are refused in another version, and cut short', () => {
+    const other = bytes('wave.bin');
     new DataView(other).setUint8(1, 9);
     expect(() => decodeFrame(other)).toThrow(ProtocolError);
     expect(() => decodeFrame(bytes('wave.bin').slice(0, -2))).toThrow(/need/);
     expect(() => decodeFrame(new ArrayBuffer(10))).toThrow(/at least 68/);
   });
 
-  it('refuses a bitmap that does not fit the header', () => {
+  it('are refused with a bitmap that does not fit the header', () => {
     const broken = bytes('wave.bin');
     new Uint8Array(broken)[68]! ^= 1;
     expect(() => decodeFrame(broken)).toThrow(/bitmap/);

@@ -173,6 +173,21 @@ def test_every_face_takes_up_a_mix_of_its_own_every_fifteen_ticks() -> None:
     assert sorted(later) == list(range(40))
 
 
+def test_packed_frames_weigh_a_third_of_plain_ones_and_plain_ones_less_than_all(
+    figures: Figures,
+) -> None:
+    rows = {row["form"]: row for row in figures["stream"]["forms"]}
+    assert figures["stream"]["frames"] == 90
+    assert rows["float32"]["bytes"] > rows["int16 from rest"]["bytes"] > rows["plain"]["bytes"]
+    assert 3 * rows["packed"]["bytes"] < rows["plain"]["bytes"]
+    assert rows["packed"]["worst_mbit_s"] < rows["packed, each whole"]["worst_mbit_s"] < 1.0
+    for row in rows.values():
+        assert 0 < row["mbit_s"] <= row["worst_mbit_s"]
+        assert row["encode_us"] > 0
+        assert row["viewer_us"] is None or row["viewer_us"] > 0
+    assert rows["float32"]["viewer_us"] is None
+
+
 def test_the_tables_say_what_is_not_installed(figures: Figures) -> None:
     missing = without_taichi(figures)
     rows = sections(missing)[0].rows

@@ -21,6 +21,7 @@ from service.app import create_app
 from service.cli import app as command_line
 from service.emotion_measuring import forms
 from service.emotion_page import words_markdown
+from service.packed import __doc__ as packed_layout
 from service.protocol import __doc__ as layout
 from service.server import running
 from service.settings import Settings
@@ -109,8 +110,12 @@ def test_every_command_is_documented_and_has_help(api: str) -> None:
 
 
 def test_both_descriptions_of_the_frame_agree(stream: str) -> None:
-    rows = re.findall(r"^\| (\w+) \| ([^|]+) \|", layout or "", re.M)[1:]
-    assert len(rows) == 12
+    plain, packed = (
+        re.findall(r"^\| ([\w ]+) \| ([^|]+) \|", text or "", re.M)[1:]
+        for text in (layout, packed_layout)
+    )
+    rows = plain + packed
+    assert (len(plain), len(packed)) == (13, 4)
     for byte, kind in rows:
         typographic = kind.replace(" x ", " \u00d7 ").strip()
         assert f"| {byte} | {typographic} |" in stream

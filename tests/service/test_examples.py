@@ -123,3 +123,12 @@ def test_the_agent_finds_feels_winks_and_exports(app: FastAPI, service: Client) 
     data = service.call("GET", address.removeprefix(service.url)).content
     assert data[:4] == b"glTF"
     face.close()
+
+
+def test_packed_frames_are_read_by_what_the_page_says(service: Client) -> None:
+    said = run("stream_reader.py", service.url)
+    rows = re.findall(r"tick (\d+): (\d+) bytes, up to (\d+\.\d+) mm", said)
+    ticks = [int(tick) for tick, _, _ in rows]
+    assert ticks == sorted(ticks)
+    assert float(rows[-1][2]) > 4.0
+    assert sorted(int(size) for _, size, _ in rows)[len(rows) // 2] < 1500

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from service.packed import decode_packed, encode_packed
 from service.protocol import SurfaceFrame, decode_frame, encode_frame
 
 FOLDER = Path(__file__).parents[1] / "golden" / "frames"
@@ -65,6 +66,26 @@ CASES = {
     ),
     "wave": SurfaceFrame(tick=3600, asleep=False, steps=wave(777), **POSED),
 }
+PACKED = {
+    "packed-rest": SurfaceFrame(tick=0, asleep=True, steps=steps_at(16, {}), **REST),
+    "packed-whole": CASES["wave"],
+    "packed-change": SurfaceFrame(
+        tick=3602,
+        asleep=False,
+        steps=wave(777) + steps_at(777, {3: (1, -2, 300), 775: (-4, 5, -6), 776: (7, 0, 0)}),
+        head_thrust=0.03125,
+        tongue_thrust=0.015625,
+        **POSED,
+    ),
+    "packed-limits": SurfaceFrame(
+        tick=1,
+        asleep=False,
+        steps=steps_at(3, {0: (32767, -32767, 1), 1: (-32767, 32767, -2), 2: (0, 32767, 3)}),
+        **REST,
+    ),
+}
+"""Packed frames; the change is told by the wave."""
+BASES = {"packed-change": "packed-whole"}
 
 
 def described(frame: SurfaceFrame) -> dict[str, object]:
@@ -100,7 +121,26 @@ def test_golden_frame(name: str, update_golden: bool) -> None:
         np.testing.assert_allclose(read[field], value, rtol=0, atol=1e-6, err_msg=field)
 
 
+@pytest.mark.parametrize("name", PACKED)
+def test_golden_packed_frame(name: str, update_golden: bool) -> None:
+    frame, base = PACKED[name], PACKED.get(BASES.get(name, ""))
+    if update_golden:
+        (FOLDER / f"{name}.bin").write_bytes(encode_packed(frame, base))
+        told = {**described(frame), "kind": 2, **({"base": BASES[name]} if base else {})}
+        (FOLDER / f"{name}.json").write_text(json.dumps(told) + "\n")
+    data = (FOLDER / f"{name}.bin").read_bytes()
+    expected = json.loads((FOLDER / f"{name}.json").read_text())
+    assert expected.pop("kind") == data[0]
+    assert expected.pop("base", None) == BASES.get(name)
+    # Deflate may be done in other ways by other releases of zlib: it is what they say that counts.
+    for packed in (data, encode_packed(frame, base)):
+        read = described(decode_packed(packed, base))
+        for field, value in expected.items():
+            np.testing.assert_allclose(read[field], value, rtol=0, atol=1e-6, err_msg=field)
+
+
 def test_the_folder_holds_these_cases_only() -> None:
-    assert {path.stem for path in FOLDER.glob("*.*") if path.suffix in {".bin", ".json"}} == set(
-        CASES
-    )
+    assert {path.stem for path in FOLDER.glob("*.*") if path.suffix in {".bin", ".json"}} == {
+        *CASES,
+        *PACKED,
+    }

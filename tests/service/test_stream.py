@@ -6,7 +6,8 @@ import asyncio
 import json
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Set
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +18,14 @@ from starlette.testclient import TestClient, WebSocketDenialResponse, WebSocketT
 from starlette.websockets import WebSocketDisconnect
 
 from service.app import create_app
+from service.packed import NoBase, decode_packed
 from service.protocol import SurfaceFrame, decode_frame
 
 PROTOCOL = "risorius.v1"
 
 
-def connect(client: TestClient, session: str) -> WebSocketTestSession:
-    path = f"ws://localhost/api/sessions/{session}/stream"
+def connect(client: TestClient, session: str, query: str = "") -> WebSocketTestSession:
+    path = f"ws://localhost/api/sessions/{session}/stream{query}"
     return client.websocket_connect(path, subprotocols=[PROTOCOL])
 
 
@@ -118,6 +120,69 @@ def test_a_late_viewer_is_whole_at_once(client: TestClient, session: str) -> Non
         with connect(client, session) as late:
             frame = frame_where(late, lambda _: True)
             np.testing.assert_array_equal(frame.steps, last.steps)
+
+
+def packed_frames(
+    socket: WebSocketTestSession, *, lost: Set[int] = frozenset()
+) -> Iterator[tuple[SurfaceFrame | None, bytes]]:
+    """Yield what each packed frame says, None where it cannot be told, but those that are lost."""
+    held: SurfaceFrame | None = None
+    number = 0
+    while True:
+        data = next_message(socket).get("bytes")
+        if not isinstance(data, bytes):
+            continue
+        number += 1
+        if number in lost:
+            continue
+        with suppress(NoBase):
+            held = decode_packed(data, held)
+            yield held, data
+            continue
+        yield None, data
+
+
+def test_packed_frames_are_for_who_asks_and_say_the_same(client: TestClient, session: str) -> None:
+    with connect(client, session, "?frames=packed") as packed, connect(client, session) as plain:
+        assert events_until(packed, "hello")["frames"] == "packed"
+        assert events_until(plain, "hello")["frames"] == "plain"
+        packed.send_json({"type": "controls", "action_units": {"AU12": 1}, "fade": 0.5})
+        shown, sizes = {}, []
+        for frame, data in packed_frames(packed):
+            assert frame is not None
+            shown[frame.tick] = frame.steps
+            sizes.append(len(data))
+            if frame.asleep and frame.tick > 0:
+                break
+        seen = {}
+        while not seen or max(seen) < max(shown):
+            frame = frame_where(plain, lambda _: True)
+            seen[frame.tick] = frame.steps
+    both = sorted(shown.keys() & seen.keys())
+    assert len(both) > 5
+    for tick in both:
+        np.testing.assert_array_equal(shown[tick], seen[tick])
+    assert np.median(sizes) < 1500
+
+
+def test_who_lost_a_packed_frame_is_whole_within_a_second(client: TestClient, session: str) -> None:
+    with connect(client, session, "?frames=packed") as socket:
+        socket.send_json({"type": "controls", "action_units": {"AU12": 1}, "fade": 3.0})
+        lost_at = whole_at = 0
+        for number, (frame, _) in enumerate(packed_frames(socket, lost={10})):
+            if frame is None:
+                lost_at = lost_at or number
+            elif lost_at:
+                whole_at = number
+                break
+        assert 0 < whole_at - lost_at <= 61
+
+
+def test_frames_of_a_form_that_is_not_are_refused(client: TestClient, session: str) -> None:
+    with pytest.raises(WebSocketDenialResponse) as refused, connect(client, session, "?frames=x"):
+        pass
+    assert refused.value.status_code == 422
+    assert refused.value.json()["known"] == ["plain", "packed"]
 
 
 @pytest.mark.parametrize(

@@ -49,8 +49,31 @@ def test_a_repeat_opens_the_window() -> None:
         assert viewer.take_frame(tick)
     viewer.offer_frame()
     assert not viewer.take_frame(3)
-    viewer.repeat_frame()
+    viewer.repeat_frame(2, asleep=True)
     assert viewer.take_frame(3)
+
+
+def test_nothing_is_repeated_to_a_viewer_that_drew_the_frame_of_a_face_that_sleeps() -> None:
+    viewer = Viewer()
+    assert viewer.take_frame(5)
+    viewer.repeat_frame(5, asleep=True)
+    assert viewer.take_frame(5)
+    viewer.acknowledge(5)
+    viewer.repeat_frame(5, asleep=True)
+    assert not viewer.take_frame(5)
+
+
+def test_a_repeat_of_a_face_that_moves_waits_for_its_next_frame_and_has_it_whole() -> None:
+    viewer = Viewer(packed=True)
+    bases = []
+    for tick in (1, 2, 3, 4):
+        if tick == 3:
+            viewer.repeat_frame(2, asleep=False)
+            assert not viewer.take_frame(2)
+        viewer.offer_frame()
+        assert viewer.take_frame(tick)
+        bases.append(viewer.base)
+    assert bases == [None, 1, None, 3]
 
 
 def test_a_newer_state_replaces_an_older_one() -> None:
