@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -44,9 +45,14 @@ class ShapeSpace:
         """Weights of the frames that the space was made from, shape (f, k)."""
         return self.left / self.frame_scale[:, None]
 
-    def weights(self, frames: Float32Array) -> FloatArray:
-        """Return the weights, shape (n, k), of other frames [mm], shape (n, v, 3)."""
-        return np.asarray((rows_of(frames) * np.repeat(self.vertex_scale, 3)) @ self.inverse)
+    def weights(self, parts: Iterable[Float32Array], most: int) -> FloatArray:
+        """Return the first weights, shape (n, most), of other frames [mm], shape (n, v, 3).
+
+        They come in parts, and in single precision: what that costs is measured with the rest.
+        """
+        scaled = np.repeat(self.vertex_scale, 3)[:, None] * self.inverse[:, :most]
+        onto = scaled.astype(np.float32)
+        return np.concatenate([rows_of(part) @ onto for part in parts]).astype(np.float64)
 
     def shapes(self, frames: Float32Array, most: int | None = None) -> FloatArray:
         """Return the shapes [mm], shape (k, 3 u), of the frames made from, with all vertices.

@@ -8,8 +8,9 @@ import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
 from .balance import balanced_space
-from .error import Check, Motion, fewest_shapes, parts_of
-from .packing import WEIGHT_STEPS
+from .error import Check, Motion, fewest_shapes, frame_errors, parts_of
+from .packing import GREATEST_STEP, WEIGHT_STEPS
+from .positive import positive
 
 SNAPSHOT_COUNT = 300
 """Frames that a basis is first made from; more are added only where those do not suffice."""
@@ -28,7 +29,7 @@ class MotionBasis:
 
     Attributes:
         shapes: Displacements [mm] at weight 1, shape (k, v, 3).
-        weights: Of each shape in each frame, -1 to 1, shape (f, k).
+        weights: Of each shape in each frame, 0 to 1, shape (f, k).
         max_error: Largest distance of any vertex in any frame from where it should be [mm].
     """
 
@@ -56,41 +57,40 @@ def fit_basis(
 ) -> MotionBasis:
     """Return few principal shapes that reproduce `motion` to `tolerance`.
 
-    The shapes are the leading singular vectors of the frames, weighted so that the largest error
-    is small rather than the mean (`balanced_space`). How many of them are needed is found by
-    trying, on the rounded numbers that will be written: one fewer would miss the tolerance.
+    The shapes are the leading singular vectors of some frames, weighted so that the largest error
+    is small rather than the mean (`balanced_space`), and one against all of them that keeps the
+    weights from 0 to 1 (`positive`). How many are needed is found by trying, on the rounded
+    numbers that will be written: one fewer would miss the tolerance. All frames are looked at
+    afterwards, and those that are missed taken in.
 
     Args:
         motion: What to reproduce; at least one frame.
         tolerance: Largest error allowed of any vertex in any frame [mm].
         step: Of the grid that shapes are stored on [mm], and weights on one of their own; 0 for
             none. On a coarse one there may be an error beyond the tolerance: what is stated counts.
+            It is infinite where a move does not fit on the grid.
         dropped: Deltas below this share of the tolerance are dropped.
         check: Called now and then; raises to stop.
     """
     fine = _Fineness(tolerance, step, dropped * tolerance)
     chosen = np.unique(np.linspace(0, len(motion) - 1, SNAPSHOT_COUNT).round().astype(np.int64))
+    spare = SPARE_SHAPES
     while True:
-        basis, errors = _fit_to(motion, chosen, fine, check)
+        basis, errors = _fit_to(motion, chosen, fine, check, spare)
         missed = np.flatnonzero(errors > tolerance)
         new = np.setdiff1d(missed, chosen)
-        if new.size == 0:
-            break
-        worst = new[np.argsort(-errors[new], kind="stable")[: SNAPSHOT_COUNT // 2]]
-        spread = new[:: max(1, 2 * new.size // SNAPSHOT_COUNT)]
-        chosen = np.union1d(chosen, np.union1d(worst, spread))
-    if missed.size:
-        basis, _ = _fit_to(motion, chosen, fine, check, spare=len(chosen))
-    return basis
+        if new.size and np.isfinite(basis.max_error):
+            worst = new[np.argsort(-errors[new], kind="stable")[: SNAPSHOT_COUNT // 2]]
+            spread = new[:: max(1, 2 * new.size // SNAPSHOT_COUNT)]
+            chosen = np.union1d(chosen, np.union1d(worst, spread))
+        elif missed.size and np.isfinite(basis.max_error) and spare == SPARE_SHAPES:
+            spare = len(chosen)
+        else:
+            return basis
 
 
 def _fit_to(
-    motion: Motion,
-    chosen: IntArray,
-    fine: _Fineness,
-    check: Check | None,
-    *,
-    spare: int = SPARE_SHAPES,
+    motion: Motion, chosen: IntArray, fine: _Fineness, check: Check | None, spare: int
 ) -> tuple[MotionBasis, FloatArray]:
     """Return the basis made from the `chosen` frames, and its error in every frame [mm].
 
@@ -100,28 +100,42 @@ def _fit_to(
     frames = motion[chosen]
     stride = max(1, frames.shape[1] // SAMPLE_COUNT)
     space = balanced_space(np.ascontiguousarray(frames[:, ::stride]), fine.tolerance, check=check)
-    weights = space.own_weights
-    most = min(weights.shape[1], 2 * space.count + spare)
+    most = min(space.own_weights.shape[1], 2 * space.count + spare)
+    shapes, weights = space.shapes(frames, most), space.own_weights[:, :most]
     if len(chosen) < len(motion):
-        weights = np.concatenate([space.weights(part[:, ::stride]) for part in parts_of(motion)])
-        weights[chosen] = space.own_weights
-    rounded = _rounded(space.shapes(frames, most), weights[:, :most], fine)
-    start, tolerance = space.count, fine.tolerance
-    count, errors = fewest_shapes(motion, *rounded, tolerance, start=start, check=check)
-    kept = rounded[0][:count].reshape(count, -1, 3)
-    own = np.ascontiguousarray(rounded[1][:, :count])
-    return MotionBasis(kept, own, float(errors.max())), errors
+        weights = space.weights((part[:, ::stride] for part in parts_of(motion)), most)
+        weights[chosen] = space.own_weights[:, :most]
+    own = np.ascontiguousarray(weights[chosen])
+    tried = _rounded(*_peaked(shapes, own), fine)
+    count, _ = fewest_shapes(frames, *tried, fine.tolerance, start=space.count, check=check)
+    while True:
+        kept = _rounded(*positive(shapes[:count], weights[:, :count]), fine)
+        errors = frame_errors(frames, kept[0], kept[1][chosen], check=check)
+        # Turned positive, the shapes are rounded otherwise than those that were counted.
+        if errors.max() <= fine.tolerance or count == most:
+            break
+        count += 1
+    if len(chosen) < len(motion):
+        errors = frame_errors(motion, *kept, check=check)
+    if fine.step and np.abs(kept[0]).max(initial=0.0) > GREATEST_STEP * fine.step:
+        errors = np.full(len(errors), np.inf)
+    points = kept[0].reshape(len(kept[0]), -1, 3)
+    return MotionBasis(points, kept[1], float(errors.max())), errors
+
+
+def _peaked(shapes: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return both scaled so that each shape's largest weight is 1."""
+    largest = np.abs(weights).argmax(axis=0)
+    peaks = weights[largest, np.arange(weights.shape[1])]
+    peaks = np.where(peaks == 0, 1.0, peaks)
+    return shapes * peaks[:, None], weights / peaks
 
 
 def _rounded(
     shapes: FloatArray, weights: FloatArray, fine: _Fineness
 ) -> tuple[Float32Array, Float32Array]:
-    """Return both as they will be written, scaled so that each shape's largest weight is 1."""
-    largest = np.abs(weights).argmax(axis=0)
-    peaks = weights[largest, np.arange(weights.shape[1])]
-    peaks = np.where(peaks == 0, 1.0, peaks)
-    points = (shapes * peaks[:, None]).reshape(len(shapes), -1, 3)
-    weights = weights / peaks
+    """Return both as they will be written."""
+    points = shapes.reshape(len(shapes), -1, 3)
     if fine.step:
         points = np.round(points / fine.step) * fine.step
         weights = np.round(weights * WEIGHT_STEPS) / WEIGHT_STEPS

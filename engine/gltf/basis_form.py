@@ -1,8 +1,9 @@
-"""A clip as few shapes of its own motion: each mesh has the fewest that keep to the tolerance."""
+"""A clip as few shapes of its own motion: each region has the fewest that keep to the tolerance."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,10 +12,11 @@ from ..clip import Clip
 from .basis import DROPPED, LEAST_DROPPED, MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder, metres
 from .drawn import DrawnFace
-from .error import Check
+from .error import Check, Motion
 from .form import ROUNDING, Fit, promised
 from .motion import ClipMotion, Piece
 from .packing import Grid, Packing
+from .regions import regions_of
 from .scene import Pivot
 from .skin import add_piece
 
@@ -22,70 +24,159 @@ NORMAL_FRAMES = 150
 """Frames that the shapes' normals are fitted to."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Region:
+    """Some vertices of a mesh, and the shapes that they move by."""
+
+    vertices: IntArray
+    basis: MotionBasis
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """A mesh as shapes of its regions.
+
+    Attributes:
+        piece: The mesh.
+        regions: Those that move; the first, where none does.
+        grid: Where its vertices are stored.
+        max_error: Largest distance of any vertex from where it should be [mm].
+    """
+
+    piece: Piece
+    regions: tuple[_Region, ...]
+    grid: Grid
+    max_error: float
+
+    @property
+    def count(self) -> int:
+        """Number of shapes."""
+        return sum(len(region.basis.shapes) for region in self.regions)
+
+    def shapes(self) -> Iterator[Float32Array]:
+        """Yield each shape, with zeros outside of its region, shape (v, 3)."""
+        for region in self.regions:
+            for shape in region.basis.shapes:
+                yield _spread(shape, region.vertices, len(self.piece.rest))
+
+    def rows(self) -> list[IntArray]:
+        """Return the vertices of each shape's region."""
+        return [region.vertices for region in self.regions for _ in region.basis.shapes]
+
+    def weights(self, shown: IntArray) -> Float32Array:
+        """Return the weights of all shapes in each frame that is shown, shape (f, k)."""
+        return np.concatenate([region.basis.weights[shown] for region in self.regions], axis=1)
+
+
 def fit_shapes(clip: Clip, motion: ClipMotion, packing: Packing, check: Check) -> Fit:
     """Return the shapes that a clip's motion is made of.
 
-    The skin and each strand part have a basis of their own: brows and lashes follow a few points
-    of the skin, and need fewer shapes than it does.
+    Regions of the skin have a basis of their own, and so has each strand part: what moves by
+    itself, and what follows a few points of the skin, needs fewer shapes than all of the face.
+    Where a file may not have sparse accessors, a shape of a region takes as much as one of all, so
+    there are no regions.
     """
     fitted = [_fitted(piece, packing, check) for piece in motion.pieces]
-    bases = [basis for basis, _ in fitted]
-    error = max(basis.max_error + grid.error * 1e3 for basis, grid in fitted)
-    counts = {
-        piece.name: len(basis.shapes) for piece, basis in zip(motion.pieces, bases, strict=True)
-    }
+    counts = {each.piece.name: each.count for each in fitted}
+    error = max(each.max_error for each in fitted)
     told = {"basis": counts["skin"], "shapes": counts, "max_error_mm": promised(error)}
-    turns = _turns(motion, bases[0])
+    turns = _turns(motion, fitted[0])
 
     def add(builder: GlbBuilder, face: DrawnFace, pivots: Mapping[str, Pivot]) -> list[Channel]:
         channels = []
-        for piece, (basis, grid) in zip(motion.pieces, fitted, strict=True):
+        for own in fitted:
+            skin = own.piece.part is None
             node = add_piece(
                 builder,
                 face,
                 pivots["head"],
-                piece,
-                names=[f"shape_{number:02d}" for number in range(len(basis.shapes))],
-                moves=list(basis.shapes),
-                turns=list(turns) if piece.part is None else (),
+                own.piece,
+                names=[f"shape_{number:02d}" for number in range(own.count)],
+                moves=list(own.shapes()),
+                turns=turns if skin else (),
                 smallest=0.0,
-                grid=grid,
+                grid=own.grid,
+                rows=own.rows(),
             )
-            if basis.shapes.any() or piece.part is None:
-                channels.append(Channel(node, "weights", basis.weights[motion.shown].ravel()))
+            if skin or any(region.basis.shapes.any() for region in own.regions):
+                channels.append(Channel(node, "weights", own.weights(motion.shown).ravel()))
         return channels
 
     return Fit(add, told)
 
 
-def _fitted(piece: Piece, packing: Packing, check: Check) -> tuple[MotionBasis, Grid]:
-    """Return the shapes of a piece, and the grid that they fit on within the tolerance.
+def _fitted(piece: Piece, packing: Packing, check: Check) -> _Fitted:
+    """Return the shapes of a piece, on a grid where they fit on it within the tolerance.
 
     Very many shapes may add up what each loses by rounding: those are not rounded.
     """
+    areas = [np.arange(len(piece.rest))]
+    if packing.sparse and piece.part is None:
+        areas = regions_of(piece.rest)
     grid = packing.grid(metres(piece.rest))
-    for own, dropped in ((grid, DROPPED), (grid, LEAST_DROPPED), (Grid(), LEAST_DROPPED)):
+    for own in (grid, Grid()):
         # What is left of the tolerance where the places at rest are rounded, too.
         tolerance = packing.tolerance - own.error * 1e3 - ROUNDING
+        regions = [_region(piece.motion, area, own, tolerance, check) for area in areas]
+        error = max(region.basis.max_error for region in regions)
+        if error <= tolerance:
+            break
+    moving = [region for region in regions if region.basis.shapes.any()]
+    return _Fitted(piece, tuple(moving or regions[:1]), own, error + own.error * 1e3)
+
+
+def _region(
+    motion: Motion, vertices: IntArray, grid: Grid, tolerance: float, check: Check
+) -> _Region:
+    for dropped in (DROPPED, LEAST_DROPPED):
         basis = fit_basis(
-            piece.motion, tolerance=tolerance, step=own.step * 1e3, dropped=dropped, check=check
+            _Some(motion, vertices),
+            tolerance=tolerance,
+            step=grid.step * 1e3,
+            dropped=dropped,
+            check=check,
         )
         if basis.max_error <= tolerance:
             break
-    return basis, own
+    return _Region(vertices, basis)
 
 
-def _turns(motion: ClipMotion, basis: MotionBasis) -> Float32Array:
-    """Return the change of the skin's normals that best goes with each shape, shape (k, d, 3).
+class _Some:
+    """The motion of some vertices."""
+
+    def __init__(self, motion: Motion, vertices: IntArray) -> None:
+        self._motion = motion
+        self._vertices = vertices
+
+    def __len__(self) -> int:
+        return len(self._motion)
+
+    def __getitem__(self, frames: slice | IntArray, /) -> Float32Array:
+        return np.ascontiguousarray(self._motion[frames][:, self._vertices])
+
+
+def _turns(motion: ClipMotion, fitted: _Fitted) -> list[Float32Array]:
+    """Return the change of the skin's normals that best goes with each shape, shape (d, 3) each.
 
     Normals are not linear in the positions, so this is a least-squares fit over the frames.
     """
     count = len(motion.displacements)
     chosen: IntArray = np.unique(np.linspace(0, count - 1, NORMAL_FRAMES).round().astype(np.int64))
     changes = motion.drawer.turns(motion.displacements[chosen])
-    weights = basis.weights[chosen].astype(np.float64)
-    # A little damping: shapes that none of these frames uses get no normals instead of noise.
-    squares = weights.T @ weights + 1e-3 * np.eye(weights.shape[1])
-    onto = np.linalg.solve(squares, weights.T).astype(np.float32)
-    fitted = onto @ changes.reshape(len(chosen), -1)
-    return np.asarray(fitted.reshape(len(squares), -1, 3), np.float32)
+    turns = []
+    for region in fitted.regions:
+        weights = region.basis.weights[chosen].astype(np.float64)
+        # A little damping: shapes that none of these frames uses get no normals instead of noise.
+        squares = weights.T @ weights + 1e-3 * np.eye(weights.shape[1])
+        onto = np.linalg.solve(squares, weights.T).astype(np.float32)
+        wanted = changes[:, region.vertices].reshape(len(chosen), -1)
+        for turn in (onto @ wanted).reshape(len(onto), -1, 3):
+            turns.append(_spread(turn, region.vertices, changes.shape[1]))
+    return turns
+
+
+def _spread(values: Float32Array, vertices: IntArray, count: int) -> Float32Array:
+    """Return values of some vertices among zeros for all, shape (v, 3)."""
+    spread = np.zeros((count, 3), np.float32)
+    spread[vertices] = values
+    return spread

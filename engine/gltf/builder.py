@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import IntArray
 from .materials import MATERIALS, Look, Maps
 from .packing import EXTENSION, WEIGHT_STEPS, Grid, Packing, packed, packed_turns
 from .tangents import tangents_of
@@ -99,6 +100,8 @@ class GlbBuilder:
         self._blob = bytearray()
         self._stored: dict[tuple[object, ...], int] = {}
         self._zeros: dict[int, int] = {}
+        self._rows, self._values = _Pool(), _Pool()
+        self._row_lists: dict[tuple[str, bytes], int] = {}
         self._materials: dict[tuple[str, bool, tuple[float, ...]], int] = {}
         self._textures = dict(textures or {})
         self._pictures: dict[str, int] = {}
@@ -143,47 +146,77 @@ class GlbBuilder:
             self._stored[key] = self._append(self._gltf.accessors, accessor)
         return self._stored[key]
 
-    def moves(self, moves: Array, *, smallest: float, grid: Grid) -> int:
+    def moves(
+        self, moves: Array, *, smallest: float, grid: Grid, within: IntArray | None = None
+    ) -> int:
         """Store the displacements of a morph target [m], shape (n, 3), on the grid of its mesh.
 
-        Those whose components all stay below `smallest` are taken as none.
+        Those whose components all stay below `smallest` are taken as none. Targets that move
+        vertices of the same rows only, those `within`, may share the list of them.
         """
         kept = np.where((np.abs(moves) >= smallest).any(axis=1, keepdims=True), moves, 0.0)
-        return self._delta(grid.moves(kept.astype(np.float32)), bounds=True)
+        return self._delta(grid.moves(kept.astype(np.float32)), bounds=True, within=within)
 
-    def turns(self, turns: Array, *, smallest: float) -> int:
+    def turns(self, turns: Array, *, smallest: float, within: IntArray | None = None) -> int:
         """Store the changes of normals of a morph target, shape (n, 3), those above `smallest`."""
         kept = np.where((np.abs(turns) >= smallest).any(axis=1, keepdims=True), turns, 0.0)
         if self.packing.quantize:
-            return self._delta(packed_turns(kept), normalized=True)
-        return self._delta(kept.astype(np.float32))
+            return self._delta(packed_turns(kept), normalized=True, within=within)
+        return self._delta(kept.astype(np.float32), within=within)
 
-    def _delta(self, array: Array, *, bounds: bool = False, normalized: bool = False) -> int:
+    def _delta(
+        self,
+        array: Array,
+        *,
+        bounds: bool = False,
+        normalized: bool = False,
+        within: IntArray | None = None,
+    ) -> int:
         """Store a morph target attribute, shape (n, 3), sparse where that may be and is smaller."""
         rows = np.flatnonzero(array.any(axis=1))
         if rows.size == 0 and self.packing.sparse:
             return self._zero(len(array))
-        values = np.ascontiguousarray(array[rows])
-        indices = compact_indices(rows)
-        dense = len(array) * _stride(array)
-        if not self.packing.sparse or indices.nbytes + values.nbytes > _SPARSE_GAIN * dense:
+        each = int(array[0].nbytes)
+        size = len(rows) * (compact_indices(rows).itemsize + each)
+        if within is not None and len(within) * each < size:
+            # A few zeros more, and a list of rows that others share.
+            rows, size = within, len(within) * each
+        if not self.packing.sparse or size > _SPARSE_GAIN * len(array) * _stride(array):
             return self.accessor(
                 array, target=pygltflib.ARRAY_BUFFER, bounds=bounds, normalized=normalized
             )
+        values = np.ascontiguousarray(array[rows])
+        indices = compact_indices(rows)
         accessor = self._describe(array.shape, array.dtype)
         accessor.normalized = normalized or None
         accessor.sparse = pygltflib.Sparse(
             count=len(rows),
             indices=pygltflib.AccessorSparseIndices(
-                bufferView=self._view(indices, None),
+                bufferView=self._pooled(self._rows),
+                byteOffset=self._row_list(indices) or None,
                 componentType=getattr(pygltflib, _COMPONENTS[indices.dtype.name]),
             ),
-            values=pygltflib.AccessorSparseValues(bufferView=self._view(values, None)),
+            values=pygltflib.AccessorSparseValues(
+                bufferView=self._pooled(self._values), byteOffset=self._values.add(values) or None
+            ),
         )
         if bounds:
             kept = np.concatenate([values, np.zeros((1, 3), values.dtype)])
             _state_bounds(accessor, kept if len(rows) < len(array) else values)
         return self._append(self._gltf.accessors, accessor)
+
+    def _row_list(self, indices: Array) -> int:
+        """Store the rows of a sparse accessor, equal ones once; return where among all they are."""
+        key = (indices.dtype.name, indices.tobytes())
+        if key not in self._row_lists:
+            self._row_lists[key] = self._rows.add(indices)
+        return self._row_lists[key]
+
+    def _pooled(self, pool: _Pool) -> int:
+        """Return the buffer view of a pool, whose bytes come last."""
+        if pool.view is None:
+            pool.view = self._append(self._gltf.bufferViews, pygltflib.BufferView(buffer=0))
+        return pool.view
 
     def _zero(self, count: int) -> int:
         """Return an accessor of `count` zero vectors, which takes no bytes (section 3.6.2.3)."""
@@ -426,6 +459,11 @@ class GlbBuilder:
 
     def to_bytes(self) -> bytes:
         """Return the GLB file."""
+        for pool in (self._rows, self._values):
+            if pool.view is not None:
+                view = self._gltf.bufferViews[pool.view]
+                view.byteOffset, view.byteLength = len(self._blob), len(pool.data)
+                self._blob += pool.data + bytes(-len(pool.data) % 4)
         self._gltf.buffers = [pygltflib.Buffer(byteLength=len(self._blob))]
         self._gltf.set_binary_blob(self._blob)
         return b"".join(bytes(part) for part in self._gltf.save_to_bytes())
@@ -436,14 +474,29 @@ class GlbBuilder:
         return len(items) - 1
 
 
+class _Pool:
+    """Bytes of many sparse accessors in one buffer view: a view each takes more than some hold."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.view: int | None = None
+
+    def add(self, array: Array) -> int:
+        """Add an array; return where it begins, a multiple of four."""
+        self.data += bytes(-len(self.data) % 4)
+        place = len(self.data)
+        self.data += array.tobytes()
+        return place
+
+
 def _stride(array: Array) -> int:
     """Return the bytes from one vertex to the next, a multiple of four."""
     return int(array[0].nbytes + 3) // 4 * 4
 
 
 def _state_bounds(accessor: pygltflib.Accessor, array: Array) -> None:
-    accessor.min = [float(value) for value in np.atleast_1d(array.min(axis=0))]
-    accessor.max = [float(value) for value in np.atleast_1d(array.max(axis=0))]
+    accessor.min = np.atleast_1d(array.min(axis=0)).tolist()
+    accessor.max = np.atleast_1d(array.max(axis=0)).tolist()
 
 
 def _material_named(name: str, tint: tuple[float, ...]) -> pygltflib.Material:

@@ -55,12 +55,14 @@ def fewest_shapes(
     tried: dict[int, FloatArray] = {}
 
     def enough(count: int) -> bool:
-        tried[count] = _frame_errors(motion, shapes, weights, count, tolerance, check)
+        tried[count] = frame_errors(
+            motion, shapes[:count], weights[:, :count], tolerance, check=check
+        )
         return bool(tried[count].max() <= tolerance)
 
     count = smallest(enough, start, len(shapes))
     if count not in tried or len(tried[count]) < len(motion):
-        tried[count] = _frame_errors(motion, shapes, weights, count, np.inf, check)
+        tried[count] = frame_errors(motion, shapes[:count], weights[:, :count], check=check)
     return count, tried[count]
 
 
@@ -87,23 +89,30 @@ def smallest(enough: Callable[[int], bool], start: int, most: int) -> int:
     return high
 
 
-def _frame_errors(
+def frame_errors(
     motion: Motion,
     shapes: Float32Array,
     weights: Float32Array,
-    count: int,
-    tolerance: float,
-    check: Check | None,
+    tolerance: float = np.inf,
+    *,
+    check: Check | None = None,
 ) -> FloatArray:
-    """Return the largest vertex error [mm] of each frame with the first `count` shapes.
+    """Return the largest vertex error [mm] of each frame.
 
     It ends after the part of the frames that misses `tolerance`.
+
+    Args:
+        motion: What the shapes stand for.
+        shapes: Displacements at weight 1 [mm], shape (k, 3 v).
+        weights: Of each shape in each frame, shape (f, k).
+        tolerance: Largest error that is of interest [mm].
+        check: Called before each part of the frames; raises to stop.
     """
     errors = []
     for part, own in zip(parts_of(motion), parts_of(weights), strict=True):
         if check is not None:
             check()
-        errors.append(np.sqrt(_squares(part, shapes, own, count).max(axis=1)))
+        errors.append(np.sqrt(_squares(part, shapes, own).max(axis=1)))
         if errors[-1].max() > tolerance:
             break
     return np.concatenate(errors).astype(np.float64)
@@ -113,13 +122,11 @@ def vertex_errors(
     part: Float32Array, shapes: Float32Array, weights: Float32Array, count: int
 ) -> FloatArray:
     """Return the error [mm] of each vertex in each frame, shape (f, v)."""
-    return np.sqrt(_squares(part, shapes, weights, count)).astype(np.float64)
+    return np.sqrt(_squares(part, shapes[:count], weights[:, :count])).astype(np.float64)
 
 
-def _squares(
-    part: Float32Array, shapes: Float32Array, weights: Float32Array, count: int
-) -> Float32Array:
-    left = weights[:, :count] @ shapes[:count]
+def _squares(part: Float32Array, shapes: Float32Array, weights: Float32Array) -> Float32Array:
+    left = weights @ shapes
     left -= rows_of(part)
     np.multiply(left, left, out=left)
     return np.asarray(left[:, 0::3] + left[:, 1::3] + left[:, 2::3])

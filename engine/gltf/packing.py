@@ -22,6 +22,9 @@ WEIGHT_STEPS = 32767
 MOST_STEPS = 32_000
 """Steps from the middle of a mesh to its farthest vertex; an int16 has a few more."""
 
+GREATEST_STEP = 32767
+"""The greatest number of an int16: no move on a grid is farther."""
+
 Array = npt.NDArray[Any]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from .builder import GlbBuilder, metres
 from .drawn import DrawnFace
 from .materials import look_name
@@ -82,6 +82,7 @@ def add_piece(
     turns: Sequence[npt.NDArray[np.floating]],
     smallest: float,
     grid: Grid | None = None,
+    rows: Sequence[IntArray] | None = None,
 ) -> int:
     """Add one mesh that changes its form, the skin or strands; return its node.
 
@@ -95,6 +96,7 @@ def add_piece(
         turns: Change of the normals per target, shape (v, 3) each; none for strands.
         smallest: Moves below this are taken as none [mm].
         grid: Where its vertices are stored, if not on the grid of the file's packing.
+        rows: Vertices among which each target moves any, if not all of them.
     """
     if piece.part is None:
         attributes = skin_attributes(face.head, vertices=piece.rest)
@@ -111,7 +113,7 @@ def add_piece(
         attributes,
         triangles,
         material=look,
-        targets=add_targets(builder, targets, smallest=smallest, grid=grid),
+        targets=add_targets(builder, targets, smallest=smallest, grid=grid, rows=rows),
         grid=grid,
     )
     return builder.node(

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import IntArray
 from .builder import GlbBuilder
 from .packing import Grid
 
@@ -20,7 +21,12 @@ Target = Mapping[str, npt.NDArray[np.float32]]
 
 
 def add_targets(
-    builder: GlbBuilder, targets: Sequence[Target], *, smallest: float, grid: Grid | None = None
+    builder: GlbBuilder,
+    targets: Sequence[Target],
+    *,
+    smallest: float,
+    grid: Grid | None = None,
+    rows: Sequence[IntArray] | None = None,
 ) -> list[dict[str, int]]:
     """Store morph targets, without moves below `smallest` [mm] and turns that do not show.
 
@@ -29,17 +35,22 @@ def add_targets(
         targets: What to store.
         smallest: Moves below this are taken as none [mm].
         grid: Of their mesh.
+        rows: Vertices among which each moves any; all of them, where None.
     """
     stored = []
-    for target in targets:
+    for number, target in enumerate(targets):
+        within = None if rows is None else rows[number]
         kept = {
             "POSITION": builder.moves(
-                target["POSITION"], smallest=smallest * 1e-3, grid=grid or Grid()
+                target["POSITION"],
+                smallest=smallest * 1e-3,
+                grid=grid or Grid(),
+                within=within,
             )
         }
         if "NORMAL" in target:
             quantized = builder.packing.quantize
             least = SMALLEST_TURN_ON_GRID if quantized else SMALLEST_TURN
-            kept["NORMAL"] = builder.turns(target["NORMAL"], smallest=least)
+            kept["NORMAL"] = builder.turns(target["NORMAL"], smallest=least, within=within)
         stored.append(kept)
     return stored

@@ -36,12 +36,13 @@ class Glb:
             values = self._rows(entry["bufferView"], dtype, entry["count"], width, offset)
         if "sparse" in entry:
             sparse = entry["sparse"]
-            where = sparse["indices"]
+            where, what = sparse["indices"], sparse["values"]
             kind = DTYPES[where["componentType"]]
-            rows = self._rows(where["bufferView"], kind, sparse["count"], 1, 0)[:, 0]
+            count = sparse["count"]
+            rows = self._rows(where["bufferView"], kind, count, 1, where.get("byteOffset", 0))
             values = values.copy()
-            values[rows] = self._rows(
-                sparse["values"]["bufferView"], dtype, sparse["count"], width, 0
+            values[rows[:, 0]] = self._rows(
+                what["bufferView"], dtype, count, width, what.get("byteOffset", 0)
             )
         if entry.get("normalized"):
             most = np.iinfo(dtype).max

@@ -22,7 +22,6 @@ def imported(path, seconds):
     scene = bpy.context.scene
     scene.render.fps = FPS
     bpy.ops.import_scene.gltf(filepath=path)
-    widen()
     scene.frame_set(round(seconds * FPS))
     graph = bpy.context.evaluated_depsgraph_get()
     meshes = {}
@@ -33,13 +32,6 @@ def imported(path, seconds):
             meshes[thing.name] = {"keys": names, "places": places(thing.evaluated_get(graph))}
     actions = {action.name: list(action.frame_range) for action in bpy.data.actions}
     return {"path": path, "fps": FPS, "meshes": meshes, "actions": actions}
-
-
-def widen():
-    """Let shape keys go below 0: the importer looks at their first key only (docs/clips.md)."""
-    for keys in bpy.data.shape_keys:
-        for block in keys.key_blocks[1:]:
-            block.slider_min = -1.0
 
 
 def places(thing):

@@ -140,6 +140,23 @@ def test_all_ways_of_storing_say_the_same(form: str) -> None:
 
 
 @pytest.mark.parametrize(("quantize", "sparse"), STORED)
+@pytest.mark.parametrize("form", FORMS)
+def test_every_weight_is_from_0_to_1(form: str, quantize: bool, sparse: bool) -> None:
+    glb = Glb(written(form, quantize, sparse))
+    (animation,) = glb.json["animations"]
+    moved = [
+        each["target"] for each in animation["channels"] if each["target"]["path"] == "weights"
+    ]
+    assert moved
+    for target in moved:
+        name = glb.json["nodes"][target["node"]]["name"]
+        weights = np.array([glb.animated(name, "weights", frame / FPS) for frame in range(25)])
+        assert weights.min() >= 0.0
+        assert weights.max() <= 1.0
+        assert not np.any(glb.mesh(name)["weights"])
+
+
+@pytest.mark.parametrize(("quantize", "sparse"), STORED)
 def test_a_file_uses_what_was_asked_for(quantize: bool, sparse: bool) -> None:
     document = Glb(written("basis", quantize, sparse)).json
     assert ("extensionsRequired" in document) == quantize
