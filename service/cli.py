@@ -206,6 +206,22 @@ def clip(
     smooth: Annotated[
         float | None, typer.Option(help="Tracker: one-euro filter, Hz at rest; 0 is off.")
     ] = None,
+    confidence: Annotated[
+        float, typer.Option(help="Tracker: rows of a lower confidence are dropped.")
+    ] = 0.5,
+    max_gap: Annotated[
+        float, typer.Option(help="Tracker: seconds without a row that are filled.")
+    ] = 0.5,
+    full_scale: Annotated[
+        float | None, typer.Option(help="Tracker: what the file calls full intensity.")
+    ] = None,
+    au_map: Annotated[
+        str,
+        typer.Option(
+            help="Tracker: unit by column, AU01_r:AU1,AU03_r:AU4, of a file that numbers units by "
+            "index, as OpenFace 3's."
+        ),
+    ] = "",
     head: Annotated[bool, typer.Option("--head/--no-head", help="Tracker: move the head.")] = True,
     gaze: Annotated[bool, typer.Option("--gaze/--no-gaze", help="Tracker: move the eyes.")] = True,
     seconds: Annotated[float, typer.Option(help="Tracker: longest clip.")] = 120.0,
@@ -229,7 +245,7 @@ def clip(
     from .clip_commands import render
     from .clip_files import Wanted, how_told
     from .rendering import ClipRefused
-    from .track_rendering import neutral_of
+    from .track_rendering import map_of, neutral_of
 
     try:
         options = TrackOptions(
@@ -238,6 +254,10 @@ def clip(
             face=face,
             neutral=neutral_of(neutral),
             smooth=smooth,
+            min_confidence=confidence,
+            max_gap=max_gap,
+            full_scale=full_scale,
+            au_map=map_of(au_map),
             head=head,
             gaze=gaze,
             max_seconds=seconds,

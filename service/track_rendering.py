@@ -23,7 +23,7 @@ from .bodies import ModelChoice
 from .commands import live_model
 from .render_process import Order
 from .rendering import ClipRefused, Outcome, Show, check_folder, maps_of, written
-from .tracks import read_neutral
+from .tracks import read_map, read_neutral
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".jsonl", ".ndjson")
 """Of the files that trackers write."""
@@ -48,6 +48,18 @@ def neutral_of(text: str) -> float | tuple[int, int] | None:
         return read_neutral(text)
     except ValueError as error:
         raise ClipRefused(f"--{error}.") from error
+
+
+def map_of(text: str) -> dict[str, str] | None:
+    """Return what `--au-map` means, as `read_map` does.
+
+    Raises:
+        ClipRefused: If it means nothing.
+    """
+    try:
+        return read_map(text)
+    except ValueError as error:
+        raise ClipRefused(f"--{error}.".replace("au_map", "au-map", 1)) from error
 
 
 def render_track_file(

@@ -9,6 +9,7 @@ from typing import Any
 from engine import TrackOptions, TrackReport
 
 from .rendering import ClipRefused, Outcome, Show, check_folder
+from .tracks import map_text
 
 
 def render_track_by_service(
@@ -62,6 +63,9 @@ def render_track_by_service(
                 neutral=_neutral(options),
                 smooth=options.smooth,
                 confidence=options.min_confidence,
+                max_gap=options.max_gap,
+                full_scale=options.full_scale,
+                au_map=None if options.au_map is None else map_text(options.au_map),
                 head=options.head,
                 gaze=options.gaze,
                 seconds=options.max_seconds,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
@@ -29,6 +30,37 @@ def read_neutral(text: str) -> float | tuple[int, int] | None:
         raise ValueError(
             f"neutral is {text!r}; expected auto, a share such as 0.1, or frames such as 0-30"
         ) from error
+
+
+def read_map(text: str) -> dict[str, str] | None:
+    """Return the unit of each column in "AU01_r:AU1,AU03_r:AU4"; an empty text means no map.
+
+    Raises:
+        ValueError: For anything else, or a column that is named twice.
+    """
+    units: dict[str, str] = {}
+    for pair in filter(None, map(str.strip, text.split(","))):
+        column, colon, unit = (part.strip() for part in pair.rpartition(":"))
+        if not (column and colon and unit):
+            raise ValueError(
+                f"au_map has {pair[:40]!r}; expected a column and its unit, as in "
+                "AU01_r:AU1,AU03_r:AU4"
+            )
+        if column in units:
+            raise ValueError(f"au_map names the column {column[:40]!r} twice; leave one out")
+        units[column] = unit
+    return units or None
+
+
+def map_text(units: Mapping[str, str]) -> str:
+    """Return a map as `read_map` reads it."""
+    return ",".join(f"{column}:{unit}" for column, unit in units.items())
+
+
+def _map(text: str) -> str:
+    """Refuse a text that is no map."""
+    read_map(text)
+    return text
 
 
 def _neutral(text: str) -> str:
@@ -78,6 +110,24 @@ class TrackClip(ClipForm):
     confidence: float = Field(
         default=0.5, ge=0, le=1, allow_inf_nan=False, description="Rows of a lower one are dropped."
     )
+    max_gap: float = Field(
+        default=0.5,
+        ge=0,
+        le=60,
+        allow_inf_nan=False,
+        description="Seconds without a row that are filled; over longer gaps the face rests.",
+    )
+    full_scale: float | None = Field(
+        default=None,
+        ge=1e-6,
+        le=1e6,
+        allow_inf_nan=False,
+        description="What the file calls full intensity. Without it, the tracker's.",
+    )
+    au_map: Annotated[str, Field(max_length=2000), AfterValidator(_map)] = Field(
+        default="",
+        description="Unit by column, AU01_r:AU1,AU03_r:AU4, of a file that numbers units by index.",
+    )
     head: bool = Field(default=True, description="Whether the head moves.")
     gaze: bool = Field(default=True, description="Whether the eyes move.")
     seconds: float | None = Field(
@@ -108,6 +158,9 @@ def options_of(clip: TrackClip, max_seconds: float) -> TrackOptions:
             smooth=clip.smooth,
             face=clip.face,
             min_confidence=clip.confidence,
+            max_gap=clip.max_gap,
+            full_scale=clip.full_scale,
+            au_map=read_map(clip.au_map),
             head=clip.head,
             gaze=clip.gaze,
             max_seconds=max_seconds if clip.seconds is None else clip.seconds,

@@ -124,9 +124,26 @@ def test_a_tracker_s_file_is_rendered_and_reported(track: Path, tmp_path: Path) 
     assert report["ignored"] == {"not needed": ["[/odd]"]}
 
 
+def test_a_table_is_played_by_a_map_and_without_doubtful_rows(tmp_path: Path) -> None:
+    path, output = tmp_path / "face3.csv", tmp_path / "face3.glb"
+    rows = [f"{i},{i / 30:.3f},{0.9 - 0.2 * i},0.5,0.1" for i in range(4)]
+    path.write_text("\n".join(["frame,timestamp,confidence,AU01_r,AU03_r", *rows]))
+    command = ("clip", path, "-o", output, "--no-textures", "--fps", 10, "--json")
+    refused = run(*command)
+    assert refused.exit_code == 2
+    assert "with a map" in " ".join(refused.output.split())
+    mapped = ("--au-map", "AU01_r:AU1,AU03_r:AU4", "--confidence", 0.4, "--full-scale", 2)
+    result = run(*command, *mapped, "--max-gap", 1)
+    assert result.exit_code == 0, result.output
+    report = json.loads(result.stdout)
+    assert (report["rows"], report["used"]) == (4, 3)
+    assert list(report["units"]) == ["AU1", "AU4"]
+
+
 @pytest.mark.parametrize(
     ("content", "options", "said"),
     [
+        ("AU12_r\n1\n", ("--au-map", "AU12_r"), "--au-map has 'AU12_r'; expected a column"),
         (None, (), "cannot be read"),
         ("", (), "the file is empty; expected a CSV"),
         ("name,age\nJoe,7\n", (), "expected those of OpenFace 2"),

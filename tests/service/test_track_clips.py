@@ -97,9 +97,36 @@ def test_what_is_asked_for_is_done(client: TestClient) -> None:
     assert b"KHR_mesh_quantization" not in answer.content
 
 
+OPENFACE_3 = b"frame,timestamp,AU01_r,AU03_r\n" + b"".join(
+    b"%d,%.3f,0.5,%.1f\n" % (i, i / 30, 0.2 * i) for i in range(4)
+)
+
+
+def test_units_that_are_numbered_by_index_play_by_a_map(client: TestClient) -> None:
+    asked = {**QUICK, "wait": 60}
+    answer = client.post("/api/clips", params=asked, content=OPENFACE_3, headers=CSV)
+    assert answer.status_code == 422
+    assert "with a map" in answer.json()["message"]
+    asked |= {"au_map": "AU01_r:AU1, AU03_r:L4", "full_scale": "2", "max_gap": 0.1}
+    answer = client.post("/api/clips", params=asked, content=OPENFACE_3, headers=CSV)
+    assert answer.status_code == 200, answer.text
+    units = client.get(answer.headers["Location"]).json()["report"]["track"]["units"]
+    assert {name: unit["columns"] for name, unit in units.items()} == {
+        "AU1": ["AU01_r"],
+        "L4": ["AU03_r"],
+    }
+    assert units["AU1"]["played"] == pytest.approx(0.25, abs=0.02)
+
+
 @pytest.mark.parametrize(
     ("query", "said"),
     [
+        ("au_map=AU01_r", "expected a column and its unit"),
+        ("au_map=AU12_r:AU1,AU12_r:AU2", "names the column 'AU12_r' twice"),
+        ("au_map=AU01_r:AU1", "the header does not have"),
+        ("au_map=AU12_r:SMILE", "the map of 'AU12_r'"),
+        ("max_gap=-1", "at least 0"),
+        ("full_scale=0", "at least"),
         ("gian=2", "did you mean 'gain'"),
         ("gain=-1", "at least 0"),
         ("gain=nan", "finite"),
