@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -47,10 +48,18 @@ class Metrics:
         self.frames_skipped = Counter(
             "risorius_frames_skipped", "Frames slow viewers missed.", registry=self.registry
         )
+        self.encoding_seconds = Counter(
+            "risorius_frame_encoding_seconds",
+            "Processor time of the event loop's thread that went into bytes of frames.",
+            registry=self.registry,
+        )
         self.clips = Counter(
             "risorius_clips", "Clips that ended.", ("status",), registry=self.registry
         )
         self.gauge("resident_bytes", "Bytes of this process in memory.", _resident_bytes)
+        self.gauge("cpu_seconds", "Processor time of this process.", time.process_time)
+        # The numbers are asked for by a route, on the thread of the event loop.
+        self.gauge("event_loop_cpu_seconds", "That of the event loop's thread.", time.thread_time)
 
     def gauge(self, name: str, help_text: str, value: Callable[[], float]) -> None:
         """Add a number that is read when somebody asks."""

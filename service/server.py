@@ -13,6 +13,7 @@ from contextlib import contextmanager
 import uvicorn
 from fastapi import FastAPI
 
+from .lines import Line
 from .settings import Settings
 
 # A viewer that stops reading may hold this much of stale frames; the system's default is 4 MB.
@@ -50,7 +51,7 @@ def server_of(app: FastAPI, settings: Settings) -> uvicorn.Server:
     """Return a server for `app`."""
     config = uvicorn.Config(
         app,
-        ws="websockets-sansio",
+        ws=Line,
         # Deflating a frame costs more than sending it.
         ws_per_message_deflate=False,
         ws_max_size=4 * settings.max_message_bytes,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import copy
+import json
 import secrets
 import time
 from collections import Counter, deque
@@ -90,6 +91,7 @@ class Session:
     kept_tick: int = 0
     state_changed: bool = False
     outgoing: Outgoing = field(default_factory=Outgoing)
+    _told: tuple[Mapping[str, Any], str] | None = None
 
     @property
     def shift(self) -> int:
@@ -108,6 +110,13 @@ class Session:
         self.frame = frame
         for viewer in self.viewers:
             viewer.offer_frame()
+
+    def text_of(self, event: Mapping[str, Any]) -> str:
+        """Return an event as JSON, made once for all who are told it."""
+        if self._told is None or self._told[0] is not event:
+            text = json.dumps(event, allow_nan=False, separators=(",", ":"))
+            self._told = (event, text)
+        return self._told[1]
 
     def tell(self, event: Mapping[str, Any]) -> None:
         """Send an event to every viewer."""

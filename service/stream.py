@@ -25,6 +25,8 @@ from .errors import Refused, Unprocessable, error_body, json_response
 from .explaining import explain
 from .guard import KEY_SUBPROTOCOL
 from .idle import idle_of
+from .lines import LINE, Line
+from .metrics import Metrics
 from .protocol import SUBPROTOCOL
 from .sessions import Session
 from .viewers import Viewer
@@ -60,7 +62,8 @@ async def stream(socket: WebSocket, session_id: str) -> None:
         view = await parts.sessions.view(session)
         role = socket.scope["risorius.access"].role
         frames = "packed" if viewer.packed else "plain"
-        await _send_event(socket, {**session.hello(view), "role": role, "frames": frames})
+        hello = {**session.hello(view), "role": role, "frames": frames}
+        await socket.send_text(session.text_of(hello))
         await _converse(socket, parts, session, viewer)
     except (WebSocketDisconnect, Refused):
         pass  # The viewer left, or the session was closed between two lines above.
@@ -107,19 +110,37 @@ async def _converse(socket: WebSocket, parts: Components, session: Session, view
 
 
 async def _send(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:
-    metrics = parts.metrics
+    line = socket.scope.get("state", {}).get(LINE)
+    if isinstance(line, Line):
+        line.on_ack = viewer.acknowledge
+        viewer.write_by(lambda: _write(line, parts.metrics, session, viewer))
     while True:
         await viewer.wait()
         for event in viewer.take_events():
-            await _send_event(socket, event)
+            await socket.send_text(session.text_of(event))
         if viewer.ended is not None:
             await socket.close(*viewer.ended)
             return
         if viewer.take_frame(session.frame.tick):
-            data = session.frame_for(viewer)
-            await socket.send_bytes(data)
-            metrics.frames_sent.inc()
-            metrics.frame_bytes.inc(len(data))
+            await socket.send_bytes(_encoded(parts.metrics, session, viewer))
+
+
+def _write(line: Line, metrics: Metrics, session: Session, viewer: Viewer) -> bool:
+    """Write the newest frame at once, if the one before is on its way."""
+    if not line.is_free or not viewer.take_frame(session.frame.tick):
+        return False
+    line.write(_encoded(metrics, session, viewer))
+    return True
+
+
+def _encoded(metrics: Metrics, session: Session, viewer: Viewer) -> bytes:
+    """Return the frame that a viewer has taken, and count it."""
+    started = time.thread_time()
+    data = session.frame_for(viewer)
+    metrics.encoding_seconds.inc(time.thread_time() - started)
+    metrics.frames_sent.inc()
+    metrics.frame_bytes.inc(len(data))
+    return data
 
 
 async def _receive(socket: WebSocket, parts: Components, session: Session, viewer: Viewer) -> None:
@@ -193,7 +214,3 @@ def _error(name: str, message: str, known: Sequence[str] | None = None) -> Mappi
 
 
 _TOO_MANY = _error("too_many_requests", "too many messages; slow down")
-
-
-async def _send_event(socket: WebSocket, event: Mapping[str, Any]) -> None:
-    await socket.send_text(json.dumps(event, allow_nan=False, separators=(",", ":")))

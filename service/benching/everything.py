@@ -21,6 +21,7 @@ from .meshes import SPLITS, measure_meshes
 from .output import measure_output
 from .roof import measure_roof
 from .stream import measure_stream
+from .viewers import CROWDS, Crowds, measure_viewers
 
 Show = Callable[[str], None]
 
@@ -36,6 +37,8 @@ class Effort(NamedTuple):
         emotions: Timed from their POST to the frame that shows them.
         turn: Seconds of each turn without clips, and beside some.
         turns: Of both.
+        viewers: Crowds of viewers.
+        crowd: Seconds that each of them is measured for.
         clip: Seconds of animation.
         lively: Seconds of lively motion that are streamed.
         sweeps: Samples of the roof.
@@ -50,6 +53,8 @@ class Effort(NamedTuple):
     emotions: int
     turn: float
     turns: int
+    viewers: Crowds
+    crowd: float
     clip: float
     lively: float
     sweeps: int
@@ -57,8 +62,10 @@ class Effort(NamedTuple):
     lengths: tuple[float, ...]
 
 
-FULL = Effort(4.0, 0.1, 7, 300, 120, 10.0, 3, 4.0, 20.0, 100, SPLITS, LENGTHS)
-QUICK = Effort(0.2, 0.01, 3, 20, 8, 1.0, 1, 0.4, 1.5, 10, SPLITS[:2], (0.5, 1.0))
+FULL = Effort(4.0, 0.1, 7, 300, 120, 10.0, 3, CROWDS, 8.0, 4.0, 20.0, 100, SPLITS, LENGTHS)
+QUICK = Effort(
+    0.2, 0.01, 3, 20, 8, 1.0, 1, ((1, 3), (2, 1)), 0.5, 0.4, 1.5, 10, SPLITS[:2], (0.5, 1.0)
+)
 PARTS = (
     "peers",
     "integrators",
@@ -69,6 +76,7 @@ PARTS = (
     "beside_clips",
     "output",
     "stream",
+    "viewers",
     "clips",
     "roof",
 )
@@ -109,6 +117,7 @@ def measure(
         "beside_clips": lambda: measure_beside_clips(seconds=effort.turn, turns=effort.turns),
         "output": lambda: measure_output(rig, clip_seconds=effort.clip),
         "stream": lambda: measure_stream(rig, seconds=effort.lively),
+        "viewers": lambda: measure_viewers(effort.viewers, seconds=effort.crowd),
         "clips": lambda: measure_clips(rig, lengths=effort.lengths),
         "roof": lambda: measure_roof(rig, repeats=effort.sweeps),
     }

@@ -11,6 +11,7 @@ from rich.table import Table
 from ..tables import markdown_table
 from .section import Row, Section
 from .stream import stream_section
+from .viewers import viewers_section
 
 
 def about(figures: dict[str, Any]) -> str:
@@ -311,6 +312,7 @@ _TABLES: dict[str, Callable[[Any], Section]] = {
     "beside_clips": _beside_clips,
     "output": _output,
     "stream": stream_section,
+    "viewers": viewers_section,
     "clips": _clips,
     "roof": _roof,
 }

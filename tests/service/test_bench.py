@@ -188,6 +188,19 @@ def test_packed_frames_weigh_a_third_of_plain_ones_and_plain_ones_less_than_all(
     assert rows["float32"]["viewer_us"] is None
 
 
+def test_every_viewer_of_a_crowd_is_sent_frames_and_what_they_cost_adds_up(
+    figures: Figures,
+) -> None:
+    assert [(row["faces"], row["viewers"]) for row in figures["viewers"]] == [(1, 3), (2, 2)]
+    for row in figures["viewers"]:
+        assert 0 < row["least_fps"] <= row["median_fps"] < 90
+        assert row["mbit_s"] > 0
+        assert 0 < row["encoding_percent"] < 100
+        assert 0 < row["sending_percent"] < 100
+        assert row["simulating_percent"] > 0
+        assert row["loop_us_a_frame"] > 0
+
+
 def test_the_tables_say_what_is_not_installed(figures: Figures) -> None:
     missing = without_taichi(figures)
     rows = sections(missing)[0].rows

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from service.viewers import Viewer
 
 
@@ -89,3 +91,50 @@ def test_events_are_bounded() -> None:
     for number in range(1000):
         viewer.offer({"type": "error", "number": number})
     assert len(viewer.take_events()) <= 64
+
+
+def test_a_frame_is_written_at_once_only_while_nothing_else_is_being_sent() -> None:
+    viewer, written = Viewer(), []
+
+    def write() -> bool:
+        assert viewer.take_frame(len(written))
+        written.append(len(written))
+        return True
+
+    viewer.write_by(write)
+    viewer.offer_frame()
+    assert written == []  # Its first frame, and what it is told first, are still being sent.
+    assert viewer.take_frame(0)
+
+    async def waits() -> None:
+        await viewer.wait()
+        waiting = asyncio.create_task(viewer.wait())
+        await asyncio.sleep(0)
+        viewer.offer_frame()
+        assert written == [0]
+        viewer.offer({"type": "error"})
+        viewer.offer_frame()  # After what is told: the one who waits sends both.
+        assert written == [0]
+        await waiting
+        viewer.offer_frame()
+        assert written == [0]
+        assert viewer.take_frame(1)
+
+    asyncio.run(waits())
+
+
+def test_a_frame_that_cannot_be_written_at_once_is_sent_by_who_waits() -> None:
+    viewer = Viewer()
+    viewer.write_by(lambda: False)
+
+    async def waits() -> None:
+        await viewer.wait()
+        assert viewer.take_frame(0)
+        waiting = asyncio.create_task(viewer.wait())
+        await asyncio.sleep(0)
+        viewer.offer_frame()
+        async with asyncio.timeout(5):
+            await waiting
+        assert viewer.take_frame(1)
+
+    asyncio.run(waits())
