@@ -21,6 +21,7 @@ from .answers import ERROR_CONTENT, GLB, GLB_CONTENT, GlbResponse, Textured, cli
 
 router = APIRouter(prefix="/api/clips", tags=["clips"])
 _NOT_OF_TRACKS = ("wait", "ticket")
+_OF_TRACKS = {parameter["name"] for parameter in query_parameters()}
 _CSV = "text/csv"
 _EVENTS = "text/event-stream"
 CSV_CONTENT: dict[int | str, dict[str, Any]] = {
@@ -92,6 +93,7 @@ async def render_clip(
     if upload is not None:
         row = await parts.clips.submit_track(_asked_of_track(request), upload)
     elif body is not None:
+        _refuse_options_of_tracks(request)
         clip = body if textured else body.model_copy(update={"textures": False})
         row = await parts.clips.submit(clip)
     else:
@@ -104,6 +106,21 @@ async def render_clip(
         return _file(parts, row, "glb", GLB, {"Location": location})
     response.headers["Location"] = location
     return parts.clips.describe(row)
+
+
+def _refuse_options_of_tracks(request: Request) -> None:
+    """Refuse what is asked of trackers' files where a timeline is sent, which would not hear it.
+
+    Raises:
+        Unprocessable: If something is.
+    """
+    for name in request.query_params:
+        if name in _OF_TRACKS:
+            raise Unprocessable(
+                "invalid_query",
+                f"{name!r} in the address is for trackers' files; what a timeline is rendered "
+                "with, as fps, level and form, stands in its body",
+            )
 
 
 def _asked_of_track(request: Request) -> TrackClip:

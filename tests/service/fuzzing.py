@@ -16,6 +16,8 @@ from service.server import running
 
 WANTED = int(os.environ.get("RISORIUS_FUZZ_EXAMPLES", "0"))
 """Examples of each route and of each kind of message; 0 takes a few."""
+ROUTES = os.environ.get("RISORIUS_FUZZ_ROUTES", "")
+"""A regular expression for the names of the routes to try, as "POST /api/facs"; empty tries all."""
 MANY = 1_000_000
 LIMITS = {
     "requests_per_second": MANY,

@@ -34,12 +34,20 @@ def test_a_short_clip_is_waited_for(client: TestClient) -> None:
 
 @pytest.mark.parametrize("asked", ["query", "body"])
 def test_a_clip_leaves_the_maps_out(client: TestClient, asked: str) -> None:
-    params = {"wait": 30, "textures": 0} if asked == "query" else {"wait": 30}
+    params = {"wait": 60, "textures": 0} if asked == "query" else {"wait": 60}
     body = SMILE if asked == "query" else {**SMILE, "textures": False}
     bare = client.post("/api/clips", params=params, json=body)
-    full = client.post("/api/clips", params={"wait": 30}, json=SMILE)
+    full = client.post("/api/clips", params={"wait": 60}, json=SMILE)
     assert b'"albedo"' not in bare.content
     assert b'"albedo"' in full.content
+
+
+@pytest.mark.parametrize("asked", ["gain=2", "fps=24", "tolerance=null", "sparse=0&wait=1"])
+def test_a_timeline_does_not_lose_what_the_address_asks_for(client: TestClient, asked: str) -> None:
+    answer = client.post(f"/api/clips?{asked}", json=SMILE)
+    assert answer.status_code == 422
+    assert answer.json()["error"] == "invalid_query"
+    assert f"{asked.partition('=')[0]!r} in the address" in answer.json()["message"]
 
 
 def test_a_clip_is_queued_and_done(client: TestClient) -> None:
@@ -130,7 +138,7 @@ def test_a_scored_emotion_can_be_a_keyframe(client: TestClient) -> None:
     scores = [{"label": "joy", "score": 0.5}, {"label": "fear", "score": 0.5}]
     timeline = [{"time": 0.0, "emotion": {"scores": scores, "fade_in": 0.1}}]
     body = {**SMILE, "timeline": timeline, "duration": 0.2}
-    assert client.post("/api/clips", params={"wait": 30}, json=body).status_code == 200
+    assert client.post("/api/clips", params={"wait": 60}, json=body).status_code == 200
 
 
 @pytest.mark.parametrize("path", ["", ".glb", ".csv"])
