@@ -19,6 +19,7 @@ from .live import measure_latencies
 from .machine import described, load_average, machine, niceness
 from .meshes import SPLITS, measure_meshes
 from .output import measure_output
+from .page_opening import measure_page_opening
 from .roof import measure_roof
 from .stream import measure_stream
 from .viewers import CROWDS, Crowds, measure_viewers
@@ -35,6 +36,7 @@ class Effort(NamedTuple):
         repeats: Samples of each peer.
         commands: Timed through the runner, for each number of faces.
         emotions: Timed from their POST to the frame that shows them.
+        pages: Of the viewer that are opened.
         turn: Seconds of each turn without clips, and beside some.
         turns: Of both.
         viewers: Crowds of viewers.
@@ -51,6 +53,7 @@ class Effort(NamedTuple):
     repeats: int
     commands: int
     emotions: int
+    pages: int
     turn: float
     turns: int
     viewers: Crowds
@@ -62,9 +65,9 @@ class Effort(NamedTuple):
     lengths: tuple[float, ...]
 
 
-FULL = Effort(4.0, 0.1, 7, 300, 120, 10.0, 3, CROWDS, 8.0, 4.0, 20.0, 100, SPLITS, LENGTHS)
+FULL = Effort(4.0, 0.1, 7, 300, 120, 5, 10.0, 3, CROWDS, 8.0, 4.0, 20.0, 100, SPLITS, LENGTHS)
 QUICK = Effort(
-    0.2, 0.01, 3, 20, 8, 1.0, 1, ((1, 3), (2, 1)), 0.5, 0.4, 1.5, 10, SPLITS[:2], (0.5, 1.0)
+    0.2, 0.01, 3, 20, 8, 1, 1.0, 1, ((1, 3), (2, 1)), 0.5, 0.4, 1.5, 10, SPLITS[:2], (0.5, 1.0)
 )
 PARTS = (
     "peers",
@@ -73,6 +76,7 @@ PARTS = (
     "meshes",
     "latency",
     "emotion_to_frame",
+    "page_opening",
     "beside_clips",
     "output",
     "stream",
@@ -114,6 +118,7 @@ def measure(
         "meshes": lambda: measure_meshes(rig, seconds=effort.seconds / 2, splits=effort.splits),
         "latency": lambda: measure_latencies(rig, commands=effort.commands),
         "emotion_to_frame": lambda: measure_emotion_to_frame(emotions=effort.emotions),
+        "page_opening": lambda: measure_page_opening(pages=effort.pages),
         "beside_clips": lambda: measure_beside_clips(seconds=effort.turn, turns=effort.turns),
         "output": lambda: measure_output(rig, clip_seconds=effort.clip),
         "stream": lambda: measure_stream(rig, seconds=effort.lively),

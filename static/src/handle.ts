@@ -4,7 +4,7 @@ import type { Triple } from './face';
 import type { Ground } from './lights';
 
 export interface ViewerHandle {
-  /** Face, panels' data and a first frame are there. */
+  /** The face in its own materials, panels' data and a first frame are there. */
   readonly ready: boolean;
   readonly connected: boolean;
   readonly session: string;

@@ -1,5 +1,7 @@
 // Which level of detail a device is given, when its visitor does not say.
 
+import { isSoftware } from './graphics';
+
 export const LEVELS = ['low', 'medium', 'high'] as const;
 export type Level = (typeof LEVELS)[number];
 
@@ -17,13 +19,12 @@ export interface Device {
 
 const LITTLE_MEMORY = 4;
 const SMALL_SCREEN = 600;
-const NO_GRAPHICS = /swiftshader|llvmpipe|software|basic render/i;
 
 /** Return the level to ask for: high, unless the device is small, weak, or has no graphics processor. */
 export function levelFor(device: Device): Level {
   const small = device.screen < SMALL_SCREEN || device.touch;
   const weak = device.memory !== null && device.memory <= LITTLE_MEMORY;
-  return small || weak || NO_GRAPHICS.test(device.graphics) ? 'medium' : 'high';
+  return small || weak || isSoftware(device.graphics) ? 'medium' : 'high';
 }
 
 /** A surface's address at a level; the high one is what the plain address gives. */

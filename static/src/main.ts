@@ -4,7 +4,7 @@ import { Api } from './api';
 import { loadFeelings, loadPeople } from './app/lists';
 import { mountControls, mountCurtain } from './app/mounting';
 import { MuscleOverlay } from './app/muscle-overlay';
-import { OnStage } from './app/on-stage';
+import { moving, OnStage } from './app/on-stage';
 import { Opening } from './app/opening';
 import { personActions } from './app/person-actions';
 import { provideHandle } from './app/provide-handle';
@@ -16,6 +16,7 @@ import { Welcoming } from './app/welcoming';
 import { curtain } from './app/curtain';
 import { Commands } from './commands';
 import { Connection } from './connection';
+import { mark } from './marks';
 import { offer } from './offer';
 import { Performer } from './performer';
 import type { Actions } from './state/actions';
@@ -30,6 +31,7 @@ import { readPageOptions } from './url';
 /** How often it is asked who else watches. */
 const COUNT_MS = 5000;
 
+mark('script');
 const page = readPageOptions(window.location.search);
 const api = new Api(document.baseURI);
 api.ticket = ticketIn(window.location.href);
@@ -60,6 +62,9 @@ const connection: Connection = new Connection({
     scene.wake();
   },
 });
+// The service is asked first: it answers while the stage is built.
+viewer.alive = page.idle && moving(page);
+connection.connect();
 const stage = new OnStage({
   page,
   viewer,
@@ -67,9 +72,12 @@ const stage = new OnStage({
   takeFrame: () => connection.takeFrame(),
   ticket: () => api.ticket,
   who: () => opening.who,
+  onNothingDrawn: () => {
+    connection.close();
+  },
 });
 const { scene } = stage;
-viewer.alive = page.idle && stage.moving;
+mark('stage');
 const muscles = new MuscleOverlay(viewer, scene);
 stage.addOverlay(muscles);
 const commands = new Commands(
@@ -141,4 +149,3 @@ if (!page.bare) {
     scene.setGround(useTheme(viewer.theme));
   });
 }
-connection.connect();

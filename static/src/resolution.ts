@@ -19,12 +19,17 @@ export class Resolution {
   /** What a drawing takes per square of the ratio [ms]. */
   private cost = 0;
 
-  /** @param full ratio of a quick device. @param least ratio below which it is better to stutter. */
+  /**
+   * @param full ratio of a quick device.
+   * @param least ratio below which it is better to stutter.
+   * @param first ratio to begin with, before anything is known of the device.
+   */
   constructor(
     private readonly full: number,
     private readonly least: number,
+    first = full,
   ) {
-    this.ratio = full;
+    this.ratio = first;
   }
 
   /**

@@ -9,6 +9,7 @@ import {
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { drawnBy, finished, isSoftware } from './graphics';
 import type { LightName } from './light-presets';
 import { LIGHTS } from './light-presets';
 import type { Ground } from './lights';
@@ -83,6 +84,8 @@ export class Scene {
   private readonly lights = createLights();
   /** Null where the ratio is given. */
   private readonly resolution: Resolution | null;
+  /** The driver draws in software: what takes long to prepare is left out until `complete`. */
+  plain: boolean;
   private sharpening: ReturnType<typeof setTimeout> | undefined;
   private turning = false;
   private steppedAt = 0;
@@ -96,6 +99,9 @@ export class Scene {
   private framed = true;
   private scheduled = false;
   private changed = false;
+  private light: LightName;
+  /** Nothing stands before the ground yet. */
+  private empty = true;
   private waiting: (() => void)[] = [];
 
   constructor(
@@ -112,19 +118,23 @@ export class Scene {
       powerPreference: 'high-performance',
     });
     exposeSkin(this.renderer);
-    this.renderer.shadowMap.enabled = true;
+    this.plain = options.adaptive && isSoftware(this.graphics);
+    this.renderer.shadowMap.enabled = !this.plain;
     this.renderer.shadowMap.type = PCFShadowMap;
     const ratio =
       options.pixelRatio ?? Math.min(Math.max(window.devicePixelRatio, LEAST_PIXEL_RATIO), 2);
     this.renderer.setPixelRatio(ratio);
     // Who says how finely to draw gets that.
     this.resolution =
-      options.adaptive && options.pixelRatio === null ? new Resolution(ratio, COARSEST) : null;
+      options.adaptive && options.pixelRatio === null
+        ? new Resolution(ratio, COARSEST, this.plain ? COARSEST : ratio)
+        : null;
     this.scene.add(this.lights.group);
     if (options.ground !== 'none') {
       this.scene.add(this.backdrop);
       setGround(this.backdrop, options.ground);
     }
+    this.light = options.light;
     this.setLight(options.light);
     this.controls = options.orbit ? this.createControls() : null;
     this.observer = new ResizeObserver(() => {
@@ -142,24 +152,42 @@ export class Scene {
   }
 
   add(object: Object3D): void {
+    this.empty = false;
     this.scene.add(object);
     this.invalidate();
   }
 
   /** The graphics driver's name for itself. */
   get graphics(): string {
-    const gl = this.renderer.getContext();
-    const named = gl.getExtension('WEBGL_debug_renderer_info');
-    return String(gl.getParameter(named === null ? gl.RENDERER : named.UNMASKED_RENDERER_WEBGL));
+    return drawnBy(this.renderer.getContext());
   }
 
   setLight(name: LightName): void {
-    const preset = LIGHTS[name];
-    this.lights.set(preset);
-    this.scene.environment?.dispose();
-    this.scene.environment = createEnvironment(this.renderer, preset.room);
-    this.scene.environmentIntensity = preset.room.intensity;
+    this.light = name;
+    this.lights.set(LIGHTS[name]);
+    if (!this.plain) this.mirrorRoom();
     this.invalidate();
+  }
+
+  /** Add what was left out at first: what surfaces mirror, and shadows. */
+  complete(): void {
+    if (!this.plain) return;
+    this.plain = false;
+    this.renderer.shadowMap.enabled = true;
+    this.mirrorRoom();
+    this.invalidate();
+  }
+
+  private mirrorRoom(): void {
+    const { room } = LIGHTS[this.light];
+    this.scene.environment?.dispose();
+    this.scene.environment = createEnvironment(this.renderer, room);
+    this.scene.environmentIntensity = room.intensity;
+  }
+
+  /** Resolves once the graphics processor has done all that it was told. */
+  done(): Promise<void> {
+    return finished(this.renderer.getContext() as WebGL2RenderingContext);
   }
 
   /** Go round the head, until told not to, or until somebody takes the camera in hand. */
@@ -247,7 +275,9 @@ export class Scene {
       this.stepTurntable(performance.now());
       const updated = this.options.update();
       this.changed ||= updated;
-      if (this.changed && !(this.options.still && this.waiting.length === 0)) this.drawInTime();
+      const asked = this.waiting.length > 0;
+      // Before there is a face, the curtain hides all of it.
+      if (this.changed && (asked || !(this.options.still || this.empty))) this.drawInTime();
     });
   }
 

@@ -14,7 +14,7 @@ from rich.console import Console
 
 from engine import builtin_rig
 from engine.head.geometry import triangle_areas
-from service.benching import measure
+from service.benching import PARTS, measure
 from service.benching.documents import write_documents
 from service.benching.ledger import COLUMNS, OtherColumns, append_row, row_of
 from service.benching.meshes import split
@@ -28,8 +28,8 @@ Figures = dict[str, Any]
 
 @pytest.fixture(scope="module")
 def figures() -> Figures:
-    """A short run."""
-    return measure(quick=True)
+    """A short run of all but the page, which tests/browser/ opens."""
+    return measure(only=[part for part in PARTS if part != "page_opening"], quick=True)
 
 
 def peer(figures: Figures, name: str) -> dict[str, Any]:

@@ -4,7 +4,9 @@ import { Face } from '../face';
 import type { SurfaceFrame } from '../protocol';
 import type { Level } from '../level';
 import { levelFor } from '../level';
+import { mark } from '../marks';
 import { Scene } from '../scene';
+import { sketch } from '../sketch';
 import { fetching, painting } from '../state/loading';
 import type { ViewerState } from '../state/viewer.svelte';
 import { useTheme } from '../theme';
@@ -34,11 +36,15 @@ export interface OnStageOptions {
   ticket: () => string;
   /** Whom the page shows, for sentences. */
   who: () => string;
+  /** The browser cannot draw. */
+  onNothingDrawn: () => void;
 }
 
 export class OnStage {
   readonly scene: Scene;
   face: Face | null = null;
+  /** The face is drawn with all that belongs to it. */
+  complete = false;
   /** Of the newest frame that was drawn. */
   tick = 0;
   /** A frame of this face was drawn. */
@@ -49,6 +55,8 @@ export class OnStage {
   address = '';
   private readonly overlays: Overlay[] = [];
   private readonly rate = new TickRate();
+  /** Gives a face that is drawn plainly its own materials. */
+  private uncover: (() => void) | null = null;
 
   /** @throws Error where the browser cannot draw; the curtain says so. */
   constructor(private readonly options: OnStageOptions) {
@@ -70,6 +78,7 @@ export class OnStage {
     this.address = address;
     this.loading = true;
     this.frameSeen = false;
+    this.complete = false;
     viewer.step = fetching(who(), 0, 0);
     const loaded = await Face.load(withTicket(address, ticket()), (bytes, total) => {
       if (this.address === address) viewer.step = fetching(who(), bytes, total);
@@ -84,23 +93,36 @@ export class OnStage {
     this.face?.dispose();
     this.face = loaded;
     this.loading = false;
+    mark('surface');
+    this.uncover = this.scene.plain ? sketch(loaded.root) : null;
     this.scene.add(loaded.root);
     this.scene.reframe();
     viewer.surfaceReady = true;
     viewer.regions = [...loaded.regionNames].sort();
     viewer.step = null;
     for (const overlay of this.overlays) overlay.wear(loaded);
-    void this.loadMaps(loaded);
     // The frame that came while loading is still waiting, and is drawn now.
     await this.scene.rendered();
-    if (!page.bare && !curtain.isOpen) this.scene.enter();
+    await this.scene.done();
+    mark('first-frame');
+    if (!page.bare && !curtain.isOpen && this.uncover === null) this.scene.enter();
     curtain.open();
   }
 
-  /** A visitor sees the maps fade in; a picture of the page need not wait, nor who wants no motion. */
-  get moving(): boolean {
-    const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
-    return !this.options.page.bare && !still;
+  /** Give the face all that it was shown without at first: its own materials, light that it mirrors, maps. */
+  async finish(): Promise<void> {
+    if (this.complete || this.face === null || this.loading) return;
+    const { face, uncover } = this;
+    this.uncover = null;
+    if (uncover !== null) {
+      await aPause();
+      this.scene.complete();
+      uncover();
+      await this.scene.rendered();
+    }
+    void this.loadMaps(face);
+    this.complete = true;
+    mark('complete');
   }
 
   /** What the device can do; a picture of the page shows all that there is. */
@@ -142,13 +164,14 @@ export class OnStage {
       });
     } catch (error) {
       curtain.element().textContent = 'This browser cannot draw the face: it has no WebGL 2.';
+      this.options.onNothingDrawn();
       throw error;
     }
   }
 
   /** Take in what is new; tells whether it changed what is drawn. */
   private update(): boolean {
-    const faded = this.face?.stepFade(performance.now(), this.moving) ?? false;
+    const faded = this.face?.stepFade(performance.now(), moving(this.options.page)) ?? false;
     if (this.face?.fading === true) this.scene.wake();
     const moved = this.applyNewestFrame();
     let stepped = false;
@@ -190,4 +213,14 @@ export class OnStage {
     if (missing !== '') console.warn(missing);
     if (loading === this.face) this.scene.wake();
   }
+}
+
+/** A visitor sees the maps fade in; a picture of the page need not wait, nor who wants no motion. */
+export function moving(page: PageOptions): boolean {
+  return !page.bare && !window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+}
+
+/** Let the page show what was drawn, before it is kept busy again. */
+function aPause(): Promise<void> {
+  return new Promise((resume) => setTimeout(resume, 50));
 }

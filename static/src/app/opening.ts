@@ -2,6 +2,7 @@
 
 import type { Api, SessionInfo } from '../api';
 import { ApiError } from '../api';
+import { mark } from '../marks';
 import { starting } from '../state/loading';
 import type { ViewerState } from '../state/viewer.svelte';
 import type { PageOptions } from '../url';
@@ -9,6 +10,8 @@ import type { PageOptions } from '../url';
 /** Where the key is kept: as long as the tab is open, and for this page only. */
 const KEY_PLACE = 'risorius.key';
 const START_POLL_MS = 500;
+/** So long after a page has left a face, its own socket no longer counts there. */
+const LEAVING_MS = 1000;
 
 export class Opening {
   /** The session to attach to; empty to open one. */
@@ -38,7 +41,12 @@ export class Opening {
 
   /** Find the session, or open one if there is none any more, and give the address of its stream. */
   locate(): Promise<string> {
-    return this.find().catch((error: unknown) => this.askForKey(error));
+    return this.find()
+      .then((address) => {
+        mark('session');
+        return address;
+      })
+      .catch((error: unknown) => this.askForKey(error));
   }
 
   useKey(key: string): void {
@@ -56,11 +64,21 @@ export class Opening {
     return address.href;
   }
 
+  /** Close a session that this page has left, unless others watch it: then it stays theirs. */
+  leave(session: string): void {
+    if (session !== '') setTimeout(() => void this.closeUnwatched(session), LEAVING_MS);
+  }
+
   /** Count who watches, where somebody looks at this page. */
   async countViewers(): Promise<void> {
     if (this.page.bare || document.hidden || this.viewer.status !== 'open') return;
     const known = await this.api.session(this.session).catch(() => null);
     this.viewer.watching = known?.viewers ?? this.viewer.watching;
+  }
+
+  private async closeUnwatched(session: string): Promise<void> {
+    const known = await this.api.session(session).catch(() => null);
+    if (known?.viewers === 0) await this.api.closeSession(session).catch(() => undefined);
   }
 
   private async find(): Promise<string> {

@@ -49,7 +49,7 @@ export function personActions(parts: PersonParts): PersonActions {
     welcoming.resume = commands.carried();
     commands.forget();
     connection.connect();
-    if (left !== '') api.closeSession(left).catch(() => undefined);
+    opening.leave(left);
   };
 
   /** Make the person that the panel asks for, once its sliders rest; the newest wish counts. */

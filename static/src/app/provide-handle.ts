@@ -9,7 +9,7 @@ export function provideHandle(viewer: ViewerState, stage: OnStage, told: Told): 
   const { scene } = stage;
   window.__viewer = {
     get ready() {
-      return viewer.surfaceReady && viewer.rig !== null && stage.frameSeen;
+      return stage.complete && viewer.rig !== null && stage.frameSeen;
     },
     get connected() {
       return viewer.status === 'open';

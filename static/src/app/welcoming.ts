@@ -3,6 +3,7 @@
 import type { Api } from '../api';
 import type { Level } from '../level';
 import { atLevel } from '../level';
+import { mark } from '../marks';
 import type { Hello } from '../protocol';
 import type { ViewerState } from '../state/viewer.svelte';
 import { curtain } from './curtain';
@@ -24,6 +25,7 @@ export class Welcoming {
   ) {}
 
   async take(hello: Hello): Promise<void> {
+    mark('hello');
     const { api, viewer, opening, stage, told } = this;
     viewer.session = opening.session = hello.session;
     viewer.locked = '';
@@ -44,8 +46,10 @@ export class Welcoming {
       if (hello.rig !== told.rigId) await told.showRig(hello.rig, hello.type === 'hello');
       this.resume?.();
       this.resume = null;
+      void stage.finish();
     } catch (error) {
       viewer.step = null;
+      void stage.finish();
       viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
     }
   }

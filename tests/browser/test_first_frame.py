@@ -1,0 +1,51 @@
+"""The face is there before what is slow about it is."""
+
+from __future__ import annotations
+
+import pytest
+from playwright import sync_api as playwright_api
+from viewer_page import settle
+
+from service.benching import measure
+from service.benching.page_opening import MOMENTS
+from service.benching.report import sections
+
+pytestmark = pytest.mark.browser
+
+
+def test_the_parts_of_a_page_s_opening_are_measured() -> None:
+    figures = measure(only=["page_opening"], quick=True)
+    found = figures["page_opening"]
+    if "unavailable" in found:
+        pytest.skip(found["unavailable"])
+    moments = found["milliseconds"]
+    assert tuple(moments) == MOMENTS
+    order = ("script", "session", "hello", "surface", "first-frame", "complete")
+    assert [moments[name] for name in order] == sorted(moments[name] for name in order)
+    assert found["processor_seconds"] > 0
+    (section,) = sections(figures)
+    assert [row[0] for row in section.rows] == list(MOMENTS)
+
+
+def test_a_person_who_leaves_does_not_close_the_face_of_others(
+    browser: playwright_api.Browser, page: playwright_api.Page, url: str
+) -> None:
+    page.goto(f"{url}/?idle=0&level=low&dpr=0.3")
+    settle(page)
+    shared = page.evaluate("() => window.__viewer.session")
+    guest = browser.new_page()
+    guest.set_default_timeout(120_000)
+    try:
+        guest.goto(f"{url}/?session={shared}&bare=1&still=1&level=low&dpr=0.2")
+        guest.wait_for_function("() => window.__viewer?.connected")
+        page.evaluate("() => document.querySelector('#people button:nth-of-type(2)').click()")
+        page.wait_for_function("id => window.__viewer.session !== id", arg=shared)
+        alone = page.evaluate("() => window.__viewer.session")
+        page.evaluate("() => document.querySelector('#people button:nth-of-type(1)').click()")
+        page.wait_for_function("id => window.__viewer.session !== id", arg=alone)
+        # What nobody watches any more is closed; then what others watch has been spared, too.
+        closed = "id => fetch(`api/sessions/${id}`).then((answer) => answer.status === 404)"
+        page.wait_for_function(closed, arg=alone)
+        assert page.request.get(f"{url}/api/sessions/{shared}").json()["viewers"] == 1
+    finally:
+        guest.close()
