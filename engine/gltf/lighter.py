@@ -40,11 +40,11 @@ THINNINGS = {
     "hairline": Thinning(points=2),
     "flyaways": Thinning(kept=8, points=2),
     "baby_hairs": Thinning(kept=8, points=2, width=1.3),
-    "brows": Thinning(kept=2, points=2, width=1.6),
-    "lashes": Thinning(kept=2, points=3, width=1.6),
+    "brows": Thinning(kept=3, points=2, width=2.7),
+    "lashes": Thinning(kept=3, points=3, width=2.2),
 }
 """By the name of the part."""
-CELLS = {"caruncle": 1.0, "gum": 2.0, "palate": 3.0, "mouth_floor": 3.0}
+CELLS = {"caruncle": 1.5, "gum": 2.0, "palate": 3.0, "mouth_floor": 3.0}
 """Side of the cells whose vertices become one [mm], by the name of the part without its side."""
 
 

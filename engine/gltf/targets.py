@@ -13,8 +13,8 @@ from .packing import Grid
 
 SMALLEST_TURN = 5e-3
 """Normals that change by less are taken as still: a third of a degree."""
-SMALLEST_TURN_ON_GRID = 12e-3
-"""The same where normals are stored in 8 bits, of which that is a step and a half."""
+SMALLEST_TURN_ON_GRID = 20e-3
+"""The same where normals are stored in 8 bits, of which that is two steps and a half."""
 
 Target = Mapping[str, npt.NDArray[np.float32]]
 """Change of "POSITION" [m] and "NORMAL", shape (n, 3)."""
