@@ -159,10 +159,26 @@ export class Api {
 
   /** Exchange the key for a ticket of a session; without a key nothing is needed. */
   async takeTicket(id: string): Promise<void> {
-    if (this.key === '') return;
+    if (this.key !== '') this.ticket = await this.ticketOf(id);
+  }
+
+  /** A ticket of another session; empty where nothing is needed. */
+  async ticketOf(id: string): Promise<string> {
+    if (this.key === '') return '';
     const asked = { role: 'control', seconds: TICKET_SECONDS };
     const issued = await this.json('POST', `api/sessions/${id}/tickets`, asked);
-    this.ticket = (issued as { ticket: string }).ticket;
+    return (issued as { ticket: string }).ticket;
+  }
+
+  /** Where the tissue under the skin of a face is now. */
+  async layers(id: string): Promise<ArrayBuffer> {
+    const response = await this.ask('GET', `api/sessions/${id}/layers`);
+    return response.arrayBuffer();
+  }
+
+  /** Keep a rig: what it is made from, and what is changed of that. */
+  saveRig(changes: object): Promise<{ id: string }> {
+    return this.json('POST', 'api/rigs', changes) as Promise<{ id: string }>;
   }
 
   /** The page that shows a session to whoever has its address, for a day. */
@@ -200,11 +216,7 @@ export class Api {
     return this.json('PATCH', `api/sessions/${id}/tissue`, tissue) as Promise<{ rig?: string }>;
   }
 
-  patchMuscle(
-    id: string,
-    muscle: string,
-    fields: Record<string, number>,
-  ): Promise<{ rig?: string }> {
+  patchMuscle(id: string, muscle: string, fields: object): Promise<{ rig?: string }> {
     const path = `api/sessions/${id}/muscles/${encodeURIComponent(muscle)}`;
     return this.json('PATCH', path, fields) as Promise<{ rig?: string }>;
   }

@@ -5,8 +5,10 @@ import type {
   BufferGeometry,
   Group,
   InterleavedBufferAttribute,
+  Material,
   MeshStandardMaterial,
   Object3D,
+  Plane,
 } from 'three';
 import {
   DynamicDrawUsage,
@@ -116,11 +118,14 @@ export class Face {
   readonly names: readonly string[];
   /** Labels of the regions of its skin. */
   readonly regionNames: readonly string[];
+  readonly skin: Mesh;
   private readonly surface: DrawnSurface;
   private readonly normals: MovingNormals;
   private readonly skinPosition: BufferAttribute;
   private readonly skinNormal: BufferAttribute;
   private readonly tissueRest: Float32Array;
+  private readonly tissueTriangles: ArrayLike<number>;
+  private clipped: Plane[] = [];
   private readonly strands: RidingStrands[] = [];
   private readonly nodes = new Map<string, Object3D>();
   private readonly jawRest: Vector3;
@@ -209,6 +214,8 @@ export class Face {
       tissue === undefined
         ? new Float32Array()
         : (plainArray(tissue.geometry.getAttribute('position')) as Float32Array);
+    this.tissueTriangles = plainArray(tissue?.geometry.getIndex() ?? skin.geometry.getIndex()!);
+    this.skin = skin;
     this.names = (tissue?.userData as Partial<SkinExtras> | undefined)?.names ?? extras.names ?? [];
     this.root.traverse((node) => this.nodes.set(nodeName(node), node));
     this.jawRest = this.nodes.get('jaw')?.position.clone() ?? new Vector3();
@@ -342,6 +349,52 @@ export class Face {
     return this.tissueRest.map(
       (value, at) => (this.origin('tissue', at % 3) + value) * MILLIMETRES,
     );
+  }
+
+  /** The streamed surface: points at rest, triangles, and how far each point is from rest [m]. */
+  get tissue(): { rest: Float32Array; triangles: ArrayLike<number>; moved: Float32Array } {
+    return { rest: this.tissueRest, triangles: this.tissueTriangles, moved: this.surface.moved };
+  }
+
+  /** Where the drawn vertices are, at rest and now [m]. */
+  get skinPlaces(): { rest: Float32Array; now: Float32Array } {
+    return { rest: this.surface.rest, now: this.surface.positions };
+  }
+
+  /** Amounts at the streamed points as amounts at the drawn vertices. */
+  spread(amounts: ArrayLike<number>): Float32Array {
+    return this.surface.spread(amounts);
+  }
+
+  /** Where a place on a triangle of the drawn skin is at rest [mm, head frame]. */
+  restOf(corners: readonly [number, number, number], weights: readonly number[]): Triple {
+    return [0, 1, 2].map((axis) => {
+      const at = corners.map((corner) => this.surface.rest[3 * corner + axis]!);
+      const sum = at.reduce((whole, value, corner) => whole + weights[corner]! * value, 0);
+      return (this.origin('skin', axis) + sum) * MILLIMETRES;
+    }) as Triple;
+  }
+
+  /** Draw the skin with another material; returns its own. */
+  paint(material: Material | Material[]): Material | Material[] {
+    const own = this.skin.material;
+    this.skin.material = material;
+    this.clip(this.clipped[0] ?? null);
+    return own;
+  }
+
+  /** Leave out what of skin and hair lies behind a plane of the world; null leaves out nothing. */
+  clip(plane: Plane | null): void {
+    this.clipped = plane === null ? [] : [plane];
+    for (const mesh of meshes(this.root)) {
+      const { role, material: kind } = mesh.userData as { role?: string; material?: string };
+      if (mesh !== this.skin && role !== 'strands' && kind !== 'hair') continue;
+      for (const material of [mesh.material].flat()) {
+        if ((material.clippingPlanes?.length ?? 0) !== this.clipped.length)
+          material.needsUpdate = true;
+        material.clippingPlanes = this.clipped;
+      }
+    }
   }
 
   /** How far a streamed point is from rest [m]. */

@@ -20,6 +20,8 @@ export interface ViewerHandle {
   point(which: string | number): Triple;
   /** A vertex of the geometry buffer that is drawn [mm, head frame]. */
   drawnVertex(index: number): Triple;
+  /** Where on the page the handles of the muscle in hand are drawn [CSS px]. */
+  readonly handles: Readonly<Record<string, { x: number; y: number }>>;
   /** Stand at a view: a name of views.ts, or degrees aside. */
   setView(view: string | number): void;
   /** What stands behind the face: dark, as on the page, or light. */

@@ -1,8 +1,14 @@
 // Wires the parts together: page address, service, stage, panels. Only this file knows all of them.
 
 import { Api } from './api';
+import { BesideOverlay } from './app/beside-overlay';
+import { editByPointer } from './app/handle-pointer';
+import { HeatOverlay } from './app/heat-overlay';
+import { insideActions } from './app/inside-actions';
+import { LayerOverlay } from './app/layer-overlay';
 import { loadFeelings, loadPeople } from './app/lists';
 import { mountControls, mountCurtain } from './app/mounting';
+import { MuscleEditing } from './app/muscle-editing';
 import { MuscleOverlay } from './app/muscle-overlay';
 import { moving, OnStage } from './app/on-stage';
 import { Opening } from './app/opening';
@@ -11,11 +17,13 @@ import { provideHandle } from './app/provide-handle';
 import { puppetActions } from './app/puppet-actions';
 import { stageActions } from './app/stage-actions';
 import { tissueActions } from './app/tissue-actions';
+import { TrailOverlay } from './app/trail-overlay';
 import { Told } from './app/told';
 import { Welcoming } from './app/welcoming';
 import { curtain } from './app/curtain';
 import { Commands } from './commands';
 import { Connection } from './connection';
+import { decodeLayers } from './inside/layers-frame';
 import { mark } from './marks';
 import { offer } from './offer';
 import { Performer } from './performer';
@@ -80,15 +88,42 @@ const { scene } = stage;
 mark('stage');
 const muscles = new MuscleOverlay(viewer, scene);
 stage.addOverlay(muscles);
-const commands = new Commands(
+const heat = new HeatOverlay(viewer, scene);
+const trails = new TrailOverlay(viewer, scene, () => stage.tick);
+const layers = new LayerOverlay(viewer, scene, {
+  file: () => api.address(`api/rigs/${told.rigId}/tissue.glb`),
+  ask: async () => decodeLayers(await api.layers(viewer.session)),
+});
+const editing = new MuscleEditing({
   viewer,
-  (text) => connection.send(text),
+  scene,
+  layers,
+  patch: (muscle, change) => api.patchMuscle(viewer.session, muscle, change),
+});
+const beside = new BesideOverlay({
+  api,
+  viewer,
+  scene,
+  level: stage.chooseLevel(),
+  address: () => stage.address,
+  pose: () => stage.newest,
+  repeat: () => {
+    commands.carried()();
+  },
+});
+const commands: Commands = new Commands(
+  viewer,
+  (text) => {
+    connection.send(text);
+    beside.tell(text);
+  },
   undefined,
   () => {
     told.forget();
   },
 );
-const told = new Told(api, viewer, commands, muscles);
+const told: Told = new Told(api, viewer, commands, muscles, editing);
+for (const overlay of [heat, trails, layers, editing, beside]) stage.addOverlay(overlay);
 const welcoming = new Welcoming(api, viewer, opening, stage, told, stage.chooseLevel());
 const timeline = new TimelineState();
 const performer = new Performer(timeline, {
@@ -101,11 +136,28 @@ const performer = new Performer(timeline, {
   },
 });
 
+const people = personActions({ api, viewer, commands, connection, opening, told, welcoming });
 const actions: Actions = {
   ...puppetActions(api, viewer, commands, told),
   ...tissueActions(api, viewer, opening),
-  ...personActions({ api, viewer, commands, connection, opening, told, welcoming }),
+  ...people,
   ...stageActions(viewer, scene, muscles, opening),
+  within: insideActions({
+    api,
+    viewer,
+    commands,
+    heat,
+    layers,
+    trails,
+    beside,
+    editing,
+    rigId: () => told.rigId,
+    setMuscles: (shown) => {
+      viewer.inside = shown;
+      muscles.refresh();
+    },
+    switchRig: people.switchRig,
+  }),
   ...takeActions({
     timeline,
     performer,
@@ -139,9 +191,10 @@ function loadLists(): void {
   void loadFeelings(api, viewer);
 }
 
-provideHandle(viewer, stage, told);
+provideHandle(viewer, stage, told, editing);
 mountCurtain(viewer, actions);
 if (!page.bare) {
+  editByPointer(document.getElementById('face') as HTMLCanvasElement, viewer, editing);
   mountControls(api, viewer, timeline, actions);
   loadLists();
   window.setInterval(() => void opening.countViewers(), COUNT_MS);

@@ -1,6 +1,9 @@
 // Muscles as bundles of fibres to be drawn: where each fibre runs, and how much of it goes with the skin.
 
-export type Point = readonly [number, number, number];
+import type { Point } from './vector';
+import { between, cross, minus, plus, scaled, unit } from './vector';
+
+export type { Point } from './vector';
 
 /** What the service says of a muscle's form, mm in the head's frame; other kinds have no fibres. */
 export interface MuscleForm {
@@ -15,6 +18,13 @@ export interface MuscleForm {
   normal?: Point;
   semi_major?: number;
   semi_minor?: number;
+  /** Of a ring: where its fibres pull to. */
+  center?: Point;
+  /** How far it acts from its attachment [mm], and how wide [degrees]. */
+  radius?: number;
+  angle?: number;
+  strength?: number;
+  force_scale?: number;
 }
 
 /** A line through the flesh. */
@@ -123,32 +133,4 @@ function lengthOf(points: readonly Point[]): number {
   return points
     .slice(1)
     .reduce((sum, point, index) => sum + Math.hypot(...minus(point, points[index]!)), 0);
-}
-
-function between(from: Point, to: Point, share: number): Point {
-  return plus(from, minus(to, from), share);
-}
-
-function plus(point: Point, way: Point, times = 1): Point {
-  return [point[0] + way[0] * times, point[1] + way[1] * times, point[2] + way[2] * times];
-}
-
-function minus(one: Point, other: Point): Point {
-  return plus(one, other, -1);
-}
-
-function scaled(way: Point, times: number): Point {
-  return [way[0] * times, way[1] * times, way[2] * times];
-}
-
-function cross(one: Point, other: Point): Point {
-  return [
-    one[1] * other[2] - one[2] * other[1],
-    one[2] * other[0] - one[0] * other[2],
-    one[0] * other[1] - one[1] * other[0],
-  ];
-}
-
-function unit(way: Point): Point {
-  return scaled(way, 1 / Math.max(1e-9, Math.hypot(...way)));
 }

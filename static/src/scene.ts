@@ -1,10 +1,12 @@
 // The stage: renderer, camera and views; draws only when something has changed.
 
-import type { Object3D } from 'three';
+import type { Mesh, Object3D } from 'three';
 import {
   PCFShadowMap,
   PerspectiveCamera,
+  Raycaster,
   Scene as ThreeScene,
+  Vector2,
   Vector3,
   WebGLRenderer,
 } from 'three';
@@ -50,6 +52,21 @@ const NEAREST = 0.45;
 const FARTHEST = 2.8;
 
 const UP = new Vector3(0, 1, 0);
+
+/** Two that are drawn side by side, as seen from the same place; null while one is on its way. */
+export interface Pair {
+  left: Object3D | null;
+  right: Object3D | null;
+}
+
+/** What a pointer touches of a mesh. */
+export interface Hit {
+  corners: [number, number, number];
+  /** Of the corners, at the place. */
+  weights: [number, number, number];
+  /** In the mesh's own frame [mm]. */
+  place: [number, number, number];
+}
 
 export interface SceneOptions {
   /** Let the visitor turn the camera. */
@@ -97,6 +114,7 @@ export class Scene {
   private glide: { from: number; to: number; start: number; duration: number } | null = null;
   /** The camera stands where a view put it, so that resizing may frame it anew. */
   private framed = true;
+  private both: Pair | null = null;
   private scheduled = false;
   private changed = false;
   private light: LightName;
@@ -120,6 +138,7 @@ export class Scene {
     exposeSkin(this.renderer);
     this.plain = options.adaptive && isSoftware(this.graphics);
     this.renderer.shadowMap.enabled = !this.plain;
+    this.renderer.localClippingEnabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     const ratio =
       options.pixelRatio ?? Math.min(Math.max(window.devicePixelRatio, LEAST_PIXEL_RATIO), 2);
@@ -155,6 +174,59 @@ export class Scene {
     this.empty = false;
     this.scene.add(object);
     this.invalidate();
+  }
+
+  /** Draw two faces side by side; null draws one again. */
+  pair(both: Pair | null): void {
+    const changed = (both === null) !== (this.both === null);
+    this.both = both;
+    if (changed) this.resize();
+    this.invalidate();
+  }
+
+  /** What is under a place of the page, of one mesh; null where there is nothing of it. */
+  hit(mesh: Mesh, x: number, y: number): Hit | null {
+    const [found] = this.ray(x, y).intersectObject(mesh, false);
+    if (found?.face == null || found.barycoord == null) return null;
+    const { a, b, c } = found.face;
+    const place = mesh.worldToLocal(found.point).multiplyScalar(1000);
+    return { corners: [a, b, c], weights: found.barycoord.toArray(), place: place.toArray() };
+  }
+
+  /** The line of sight through a place of the page, in the frame of an object [mm]. */
+  rayIn(
+    object: Object3D,
+    x: number,
+    y: number,
+  ): Record<'origin' | 'direction', [number, number, number]> {
+    const { origin, direction } = this.ray(x, y).ray;
+    const towards = object.worldToLocal(origin.clone().add(direction));
+    const from = object.worldToLocal(origin.clone());
+    return {
+      origin: from.clone().multiplyScalar(1000).toArray(),
+      direction: towards.sub(from).normalize().toArray(),
+    };
+  }
+
+  /** Where on the page a place of the world is drawn [CSS px]. */
+  screenPlace(place: Vector3): { x: number; y: number } {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const at = place.clone().project(this.camera);
+    return { x: left + (0.5 + at.x / 2) * width, y: top + (0.5 - at.y / 2) * height };
+  }
+
+  /** Whether a place of the head's surface looks this way, and not off the far side. */
+  facing(place: Vector3): boolean {
+    const seen = this.camera.position.clone().sub(this.target);
+    return place.x * seen.x + place.z * seen.z > 0;
+  }
+
+  private ray(x: number, y: number): Raycaster {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const at = new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height);
+    const caster = new Raycaster();
+    caster.setFromCamera(at, this.camera);
+    return caster;
   }
 
   /** The graphics driver's name for itself. */
@@ -351,11 +423,30 @@ export class Scene {
   private draw(): void {
     this.changed = false;
     this.turnLights();
-    this.renderer.render(this.scene, this.camera);
+    if (this.both === null) this.renderer.render(this.scene, this.camera);
+    else this.drawBoth(this.both);
     this.framesDrawn++;
     const waiting = this.waiting;
     this.waiting = [];
     for (const resolve of waiting) resolve();
+  }
+
+  /** Each in its half of the picture. */
+  private drawBoth({ left, right }: Pair): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    this.renderer.setScissorTest(true);
+    for (const [half, shown, hidden] of [
+      [0, left, right],
+      [1, right, left],
+    ] as const) {
+      if (shown !== null) shown.visible = true;
+      if (hidden !== null) hidden.visible = false;
+      this.renderer.setViewport((half * width) / 2, 0, width / 2, height);
+      this.renderer.setScissor((half * width) / 2, 0, width / 2, height);
+      this.renderer.render(this.scene, this.camera);
+    }
+    if (left !== null) left.visible = true;
+    this.renderer.setScissorTest(false);
   }
 
   private turnLights(): void {
@@ -398,16 +489,11 @@ export class Scene {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.aspect = clientWidth / clientHeight;
+    const width = this.both === null ? clientWidth : clientWidth / 2;
+    this.renderer.setViewport(0, 0, clientWidth, clientHeight);
+    this.camera.aspect = width / clientHeight;
     if (this.options.orbit) {
-      this.camera.setViewOffset(
-        clientWidth,
-        clientHeight,
-        0,
-        -BAR_HEIGHT / 2,
-        clientWidth,
-        clientHeight,
-      );
+      this.camera.setViewOffset(width, clientHeight, 0, -BAR_HEIGHT / 2, width, clientHeight);
     }
     this.camera.updateProjectionMatrix();
     if (this.framed) this.frame();

@@ -83,6 +83,23 @@ export class DrawnSurface {
     return true;
   }
 
+  /** Displacements of all streamed points as last applied [m], x y z after x y z; not to be changed. */
+  get moved(): Float32Array {
+    return this.displacements;
+  }
+
+  /** Amounts at the streamed points, spread over the drawn vertices as displacements are. */
+  spread(amounts: ArrayLike<number>): Float32Array {
+    const { indptr, indices, weights } = this.map;
+    const spread = new Float32Array(indptr.length - 1);
+    for (let row = 0; row < spread.length; row++) {
+      for (let k = indptr[row]!; k < indptr[row + 1]!; k++) {
+        spread[row]! += weights[k]! * amounts[indices[k]!]!;
+      }
+    }
+    return spread;
+  }
+
   /** Displacement of a streamed point as last applied [m]. */
   displacement(point: number): [number, number, number] {
     const u = this.displacements;

@@ -7,6 +7,7 @@ import Curtain from '../panels/Curtain.svelte';
 import Keys from '../panels/Keys.svelte';
 import Panels from '../panels/Panels.svelte';
 import People from '../panels/People.svelte';
+import StageLegend from '../panels/StageLegend.svelte';
 import StatusBar from '../panels/StatusBar.svelte';
 import Timeline from '../panels/Timeline.svelte';
 import { listenForShortcuts } from '../shortcuts';
@@ -49,6 +50,10 @@ export function mountControls(
   );
   const shortcuts = shortcutsOf(viewer, actions);
   listenForShortcuts(shortcuts);
+  const legend = document.createElement('div');
+  legend.id = 'legend';
+  element('stage').append(legend);
+  mount(StageLegend, { target: legend, props: { viewer } });
   mount(Keys, { target: document.body, props: { viewer, shortcuts } });
   mount(Panels, { target: element('panels'), props: { viewer, actions, link } });
 }

@@ -23,6 +23,8 @@ export interface Overlay {
   move(): void;
   /** Go on by itself, e.g. with a fade; tells whether it changed what is drawn. */
   step(now: number): boolean;
+  /** A face that was drawn plainly has its own materials now. */
+  uncovered?(): void;
 }
 
 export interface OnStageOptions {
@@ -53,6 +55,8 @@ export class OnStage {
   loading = false;
   /** Address of the surface that is wanted. */
   address = '';
+  /** The newest frame that was drawn. */
+  newest: SurfaceFrame | null = null;
   private readonly overlays: Overlay[] = [];
   private readonly rate = new TickRate();
   /** Gives a face that is drawn plainly its own materials. */
@@ -92,6 +96,7 @@ export class OnStage {
     }
     this.face?.dispose();
     this.face = loaded;
+    this.newest = null;
     this.loading = false;
     mark('surface');
     this.uncover = this.scene.plain ? sketch(loaded.root) : null;
@@ -118,6 +123,7 @@ export class OnStage {
       await aPause();
       this.scene.complete();
       uncover();
+      for (const overlay of this.overlays) overlay.uncovered?.();
       await this.scene.rendered();
     }
     void this.loadMaps(face);
@@ -191,6 +197,7 @@ export class OnStage {
       const frame = takeFrame();
       if (frame === null) return false;
       const changed = this.face.apply(frame);
+      this.newest = frame;
       this.frameSeen = true;
       this.tick = frame.tick;
       viewer.asleep = frame.asleep;

@@ -2,10 +2,16 @@
 
 import '../handle';
 import type { ViewerState } from '../state/viewer.svelte';
+import type { MuscleEditing } from './muscle-editing';
 import type { OnStage } from './on-stage';
 import type { Told } from './told';
 
-export function provideHandle(viewer: ViewerState, stage: OnStage, told: Told): void {
+export function provideHandle(
+  viewer: ViewerState,
+  stage: OnStage,
+  told: Told,
+  editing: MuscleEditing,
+): void {
   const { scene } = stage;
   window.__viewer = {
     get ready() {
@@ -34,6 +40,9 @@ export function provideHandle(viewer: ViewerState, stage: OnStage, told: Told): 
     },
     get landmarks() {
       return stage.face?.landmarks ?? {};
+    },
+    get handles() {
+      return editing.places;
     },
     point: (which) => stage.shown.point(which),
     drawnVertex: (index) => stage.shown.drawnVertex(index),

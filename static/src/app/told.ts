@@ -10,6 +10,7 @@ import { facsOf } from '../state/facs';
 import { describeRig } from '../state/rig';
 import type { ViewerState } from '../state/viewer.svelte';
 import { debounce } from '../throttle';
+import type { MuscleEditing } from './muscle-editing';
 import type { MuscleOverlay } from './muscle-overlay';
 
 export class Told {
@@ -25,6 +26,7 @@ export class Told {
     private readonly viewer: ViewerState,
     private readonly commands: Commands,
     private readonly muscles: MuscleOverlay,
+    private readonly editing: MuscleEditing,
   ) {}
 
   /** A control was moved: what was told before is old. */
@@ -67,6 +69,7 @@ export class Told {
     viewer.recipe = described.recipe;
     const rig = describeRig(described);
     this.muscles.use(described.muscles);
+    this.editing.use(described.muscles, isNew);
     if (isNew) {
       viewer.rig = rig;
       viewer.edits = {};

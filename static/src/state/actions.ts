@@ -3,11 +3,14 @@
 import type { LightName } from '../light-presets';
 import type { Theme } from '../theme';
 import type { ViewName } from '../views';
+import type { InsideActions } from './inside-actions';
 
 /** What a slider moves: the name of a group in a command, and a name in it. */
 export type Group = 'action_units' | 'muscles' | 'jaw' | 'gaze' | 'head' | 'tongue';
 
 export interface Actions {
+  /** See inside, and take muscles in hand. */
+  within: InsideActions;
   /** Intensity of an action unit, activation of a muscle, degrees of a pose axis. */
   set(group: Group, name: string, value: number): void;
   /** Hold it no longer, so that other layers show through; a value of 0 would be held. */

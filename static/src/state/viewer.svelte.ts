@@ -4,6 +4,7 @@ import type { Held, Merged, Numbers } from '../protocol';
 import type { Group } from './actions';
 import type { AttributeInfo, Recipe } from '../recipe';
 import type { Feeling, Place } from '../feelings';
+import { InsideState } from './inside.svelte';
 import type { Step } from './loading';
 import type { LightName } from '../light-presets';
 import type { Call } from '../retold';
@@ -91,6 +92,8 @@ export class ViewerState {
   theme = $state<Theme>('auto');
   /** The muscles are drawn over the face. */
   inside = $state(false);
+  /** What else of the inside is seen. */
+  readonly within = new InsideState();
   /** The turntable goes round. */
   turning = $state(false);
   /** How many pages and programs watch this face. */

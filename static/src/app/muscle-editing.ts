@@ -1,0 +1,266 @@
+// A muscle in hand: its handles on the face, what dragging them changes, and that as edits of the live face.
+
+import type { Face } from '../face';
+import { led, mirroredChange, onPlane, placed } from '../inside/editing';
+import type { Handle } from '../inside/editing';
+import { HandleView } from '../inside/handle-view';
+import { Newest } from '../inside/newest';
+import type { MuscleForm } from '../muscle-shape';
+import { fibresOf } from '../muscle-shape';
+import type { Scene } from '../scene';
+import type { ViewerState } from '../state/viewer.svelte';
+import type { Point } from '../vector';
+import { minus, plus } from '../vector';
+import type { LayerOverlay } from './layer-overlay';
+import type { Overlay } from './on-stage';
+
+type Change = Partial<MuscleForm>;
+
+/** What an edit may change; of each kind of muscle some are there. */
+const FIELDS = [
+  'attachment',
+  'insertion',
+  'center',
+  'radius',
+  'angle',
+  'semi_major',
+  'semi_minor',
+  'strength',
+  'force_scale',
+] as const;
+/** Edits of one field that follow each other within this are undone together [ms]. */
+const ONE_GESTURE_MS = 900;
+const MOST_KEPT = 100;
+
+export interface MuscleEditingParts {
+  viewer: ViewerState;
+  scene: Scene;
+  layers: LayerOverlay;
+  /** Change a muscle of the live face. */
+  patch: (muscle: string, change: Change) => Promise<unknown>;
+}
+
+export class MuscleEditing implements Overlay {
+  private face: Face | null = null;
+  private view: HandleView | null = null;
+  /** As the service has them, and as they were when the face was opened. */
+  private accepted: Record<string, MuscleForm> = {};
+  private first: Record<string, MuscleForm> = {};
+  private readonly before: { muscle: string; form: MuscleForm }[] = [];
+  private gesture = '';
+  private editedAt = -Infinity;
+  /** From what a pointer touches to the place that it drags [mm]. */
+  private grip: Point = [0, 0, 0];
+  private readonly sending: Newest<Change>;
+
+  constructor(private readonly parts: MuscleEditingParts) {
+    this.sending = new Newest(parts.patch, (muscle, error) => {
+      parts.viewer.sayWhy(error);
+      // What was refused is not so: show the muscle as it is.
+      const accepted = this.accepted[muscle];
+      if (accepted !== undefined) this.put(muscle, accepted);
+    });
+  }
+
+  wear(face: Face | null): void {
+    this.view?.dispose();
+    this.view = null;
+    this.face = face;
+    this.refresh();
+  }
+
+  /** The rig that the face is on has these muscles. @param isNew whether it is another face. */
+  use(muscles: readonly MuscleForm[], isNew: boolean): void {
+    const { within } = this.parts.viewer;
+    const formed = muscles.filter((muscle) => fibresOf(muscle).length > 0);
+    this.accepted = Object.fromEntries(formed.map((muscle) => [muscle.name, muscle]));
+    if (isNew) {
+      this.first = this.accepted;
+      this.before.length = 0;
+      within.edits = 0;
+      if (!(within.muscle in this.first)) within.muscle = '';
+      within.weights = Object.fromEntries(
+        Object.entries(within.weights).filter(([name]) => name in this.first),
+      );
+    }
+    // What is on its way yet is newer than what came.
+    if (isNew || this.sending.idle) within.forms = { ...this.accepted };
+    this.tellChanged();
+    this.refresh();
+  }
+
+  choose(muscle: string): void {
+    const { viewer, layers } = this.parts;
+    viewer.within.muscle = muscle;
+    this.gesture = '';
+    // Without them bone ends go along the picture.
+    if (muscle !== '') layers.load().catch(() => undefined);
+    this.refresh();
+  }
+
+  edit(change: Change, gesture: string): void {
+    const { within } = this.parts.viewer;
+    const form = within.forms[within.muscle];
+    if (form === undefined) return;
+    const now = performance.now();
+    const named = `${form.name} ${gesture}`;
+    if (named !== this.gesture || now - this.editedAt > ONE_GESTURE_MS) this.keep(form);
+    this.gesture = named;
+    this.editedAt = now;
+    this.change(form.name, change);
+    const twin = form.name.replace(/\.([LR])$/, (_, side) => (side === 'L' ? '.R' : '.L'));
+    if (within.mirrored && twin !== form.name && twin in within.forms) {
+      this.change(twin, mirroredChange(change));
+    }
+  }
+
+  undo(): void {
+    const kept = this.before.pop();
+    this.parts.viewer.within.edits = this.before.length;
+    this.gesture = '';
+    if (kept !== undefined) this.change(kept.muscle, fieldsOf(kept.form));
+  }
+
+  reset(): void {
+    const { within } = this.parts.viewer;
+    const [form, first] = [within.forms[within.muscle], this.first[within.muscle]];
+    if (form === undefined || first === undefined) return;
+    this.keep(form);
+    this.gesture = '';
+    this.change(form.name, fieldsOf(first));
+  }
+
+  move(): void {
+    // Handles stand where the muscle is at rest.
+  }
+
+  step(): boolean {
+    return false;
+  }
+
+  /** Where on the page each handle is drawn [CSS px], by its id. */
+  get places(): Record<string, { x: number; y: number }> {
+    const { view } = this;
+    if (view === null) return {};
+    const place = ({ id, place: at }: Handle) =>
+      [id, this.parts.scene.screenPlace(view.world(at))] as const;
+    return Object.fromEntries(view.handles.map(place));
+  }
+
+  /** The handle that is drawn nearest to a place of the page, if it is within `reach` CSS pixels. */
+  handleAt(x: number, y: number, reach: number): Handle | null {
+    let [found, least]: [Handle | null, number] = [null, reach];
+    for (const handle of this.view?.handles ?? []) {
+      const at = this.parts.scene.screenPlace(this.view!.world(handle.place));
+      const away = Math.hypot(at.x - x, at.y - y);
+      if (away < least) [found, least] = [handle, away];
+    }
+    return found;
+  }
+
+  /** The muscle whose fibres are drawn nearest to a place of the page. */
+  muscleAt(x: number, y: number, reach: number): string {
+    const { scene, viewer } = this.parts;
+    let [found, least] = ['', reach];
+    if (this.view === null && !this.show()) return '';
+    for (const form of Object.values(viewer.within.forms)) {
+      for (const { points } of fibresOf(form)) {
+        for (const point of points) {
+          const at = scene.screenPlace(this.view!.world(point));
+          const away = Math.hypot(at.x - x, at.y - y);
+          if (away < least && scene.facing(this.view!.world(point)))
+            [found, least] = [form.name, away];
+        }
+      }
+    }
+    return found;
+  }
+
+  /** A pointer takes a handle at a place of the page. */
+  grab(handle: Handle, x: number, y: number): void {
+    const hit = this.touched(handle, x, y);
+    this.grip = hit === null ? [0, 0, 0] : minus(handle.place, hit);
+  }
+
+  /** And leads it to another. */
+  drag(handle: Handle, x: number, y: number): void {
+    const { within } = this.parts.viewer;
+    const form = within.forms[within.muscle];
+    if (form === undefined) return;
+    if (handle.along === 'line' || handle.along === 'arc') {
+      this.edit(led(form, handle.id, this.parts.scene.rayIn(this.view!.group, x, y)), handle.id);
+      return;
+    }
+    const hit = this.touched(handle, x, y);
+    if (hit !== null) this.edit(placed(form, handle.id, plus(hit, this.grip)), handle.id);
+  }
+
+  /** Where a pointer touches what the handle goes along, as that is at rest [mm]. */
+  private touched(handle: Handle, x: number, y: number): Point | null {
+    const { scene, layers } = this.parts;
+    if (handle.along === 'skin') {
+      const hit = scene.hit(this.face!.skin, x, y);
+      if (hit !== null) return this.face!.restOf(hit.corners, hit.weights);
+    }
+    const skull = handle.along === 'bone' ? layers.skull : null;
+    if (skull !== null) {
+      const hit = scene.hit(skull, x, y);
+      if (hit !== null) return hit.place;
+    }
+    // Beside the head, or before its layers are there: along the picture.
+    const ray = scene.rayIn(this.view!.group, x, y);
+    return onPlane(ray, handle.place, ray.direction);
+  }
+
+  private change(muscle: string, change: Change): void {
+    const form = this.parts.viewer.within.forms[muscle];
+    if (form === undefined) return;
+    this.put(muscle, { ...form, ...change });
+    this.sending.put(muscle, change);
+  }
+
+  private put(muscle: string, form: MuscleForm): void {
+    const { within } = this.parts.viewer;
+    within.forms = { ...within.forms, [muscle]: form };
+    this.tellChanged();
+    this.refresh();
+  }
+
+  private keep(form: MuscleForm): void {
+    this.before.push({ muscle: form.name, form });
+    if (this.before.length > MOST_KEPT) this.before.shift();
+    this.parts.viewer.within.edits = this.before.length;
+  }
+
+  private tellChanged(): void {
+    const { within } = this.parts.viewer;
+    const differs = (form: MuscleForm): boolean =>
+      JSON.stringify(fieldsOf(form)) !== JSON.stringify(fieldsOf(this.first[form.name] ?? form));
+    within.changed = Object.values(within.forms)
+      .filter(differs)
+      .map(({ name }) => name);
+  }
+
+  private refresh(): void {
+    const { viewer, scene } = this.parts;
+    if (this.view !== null || viewer.within.muscle !== '') this.show();
+    scene.invalidate();
+  }
+
+  /** Tells whether there is a face to show handles on. */
+  private show(): boolean {
+    if (this.face === null) return false;
+    const { within } = this.parts.viewer;
+    if (this.view === null) {
+      this.view = new HandleView();
+      this.face.carry(this.view.group);
+    }
+    this.view.show(within.forms[within.muscle] ?? null);
+    return true;
+  }
+}
+
+function fieldsOf(form: MuscleForm): Change {
+  const there = FIELDS.filter((field) => form[field] !== undefined);
+  return Object.fromEntries(there.map((field) => [field, form[field]]));
+}

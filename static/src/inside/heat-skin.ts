@@ -1,0 +1,82 @@
+// The skin as a map of amounts: in place of its own colours those of the ramp, a little shaded so that form is seen.
+
+import type { Material, Mesh } from 'three';
+import {
+  DataTexture,
+  Float32BufferAttribute,
+  LinearFilter,
+  ShaderMaterial,
+  SRGBColorSpace,
+} from 'three';
+import { rampTexels } from './ramp';
+
+/** Who has a skin that can be drawn with another material; `paint` returns the one that it had. */
+export interface Painted {
+  readonly skin: Mesh;
+  paint(material: Material | Material[]): Material | Material[];
+}
+
+const TEXELS = 256;
+
+export class HeatSkin {
+  private readonly material = createMap();
+  private readonly own: Material | Material[];
+
+  /** @param face its skin is drawn as a map until this is disposed of. */
+  constructor(private readonly face: Painted) {
+    const { geometry } = face.skin;
+    const count = geometry.getAttribute('position').count;
+    geometry.setAttribute('heat', new Float32BufferAttribute(new Float32Array(count), 1));
+    this.own = face.paint(this.material);
+  }
+
+  /** Amounts at the drawn vertices, as shares of the most that the ramp shows. */
+  show(amounts: ArrayLike<number>, most: number): void {
+    const heat = this.face.skin.geometry.getAttribute('heat');
+    for (let at = 0; at < heat.count; at++) heat.setX(at, amounts[at]! / most);
+    heat.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.face.paint(this.own);
+    this.face.skin.geometry.deleteAttribute('heat');
+    (this.material.uniforms.ramp!.value as DataTexture).dispose();
+    this.material.dispose();
+  }
+}
+
+function createMap(): ShaderMaterial {
+  const ramp = new DataTexture(rampTexels(TEXELS), TEXELS, 1);
+  ramp.colorSpace = SRGBColorSpace;
+  ramp.magFilter = ramp.minFilter = LinearFilter;
+  ramp.needsUpdate = true;
+  return new ShaderMaterial({
+    uniforms: { ramp: { value: ramp } },
+    clipping: true,
+    vertexShader: /* glsl */ `
+      attribute float heat;
+      varying float vHeat;
+      varying vec3 vNormal;
+      #include <clipping_planes_pars_vertex>
+      void main() {
+        vHeat = heat;
+        vNormal = normalize(normalMatrix * normal);
+        vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * mvPosition;
+        #include <clipping_planes_vertex>
+      }`,
+    fragmentShader: /* glsl */ `
+      uniform sampler2D ramp;
+      varying float vHeat;
+      varying vec3 vNormal;
+      #include <clipping_planes_pars_fragment>
+      void main() {
+        #include <clipping_planes_fragment>
+        vec3 color = texture2D(ramp, vec2(clamp(vHeat, 0.0, 1.0), 0.5)).rgb;
+        float light = max(0.0, dot(normalize(vNormal), normalize(vec3(-0.3, 0.45, 0.85))));
+        // Dark colours get a little of the light as such, or form would be lost where nothing is strained.
+        gl_FragColor = vec4(color * (0.62 + 0.5 * light) + 0.035 * light, 1.0);
+        #include <colorspace_fragment>
+      }`,
+  });
+}

@@ -1,0 +1,168 @@
+// Handles of muscles, what dragging them comes to, and that only the newest edit is sent.
+
+import { describe, expect, it } from 'vitest';
+import { handlesOf, led, mirroredChange, placed, zoneOf } from '../src/inside/editing';
+import { Newest } from '../src/inside/newest';
+import type { MuscleForm, Point } from '../src/muscle-shape';
+
+const LINEAR: MuscleForm = {
+  name: 'zygomatic_major.L',
+  kind: 'linear',
+  attachment: [60, -20, 60],
+  insertion: [30, -60, 60],
+  radius: 70,
+  angle: 20,
+};
+const SHEET: MuscleForm = {
+  name: 'frontalis_medial.L',
+  kind: 'sheet',
+  attachment: [
+    [0, 60, 90],
+    [20, 60, 90],
+  ],
+  insertion: [
+    [0, 20, 90],
+    [20, 20, 90],
+  ],
+  radius: 50,
+};
+const RING: MuscleForm = {
+  name: 'orbicularis_oris',
+  kind: 'sphincter',
+  center: [0, -70, 110],
+  plane: [0, -70, 100],
+  normal: [0, 0, 1],
+  semi_major: 40,
+  semi_minor: 20,
+};
+
+const placeOf = (muscle: MuscleForm, id: string): Point =>
+  handlesOf(muscle).find((handle) => handle.id === id)!.place;
+/** A line of sight along z through a place. */
+const through = ([x, y]: Point) => ({ origin: [x, y, 500], direction: [0, 0, -1] }) as const;
+
+describe('handles', () => {
+  it('stand at the ends, at the reach and at the angle of a linear muscle', () => {
+    expect(handlesOf(LINEAR).map(({ id, along }) => `${id} ${along}`)).toEqual([
+      'attachment bone',
+      'insertion skin',
+      'radius line',
+      'angle arc',
+    ]);
+    expect(placeOf(LINEAR, 'radius')).toEqual([18, -76, 60]);
+  });
+
+  it('of other kinds are their lines and axes; lids have none', () => {
+    expect(handlesOf(SHEET).map(({ id }) => id)).toEqual([
+      'attachment.0',
+      'attachment.1',
+      'insertion.0',
+      'insertion.1',
+      'radius',
+    ]);
+    expect(placeOf(RING, 'semi_major')).toEqual([40, -70, 100]);
+    expect(handlesOf({ name: 'levator_palpebrae.L', kind: 'lid' })).toEqual([]);
+    expect(zoneOf({ name: 'levator_palpebrae.L', kind: 'lid' })).toEqual([]);
+  });
+
+  it('that are put where they stand change nothing', () => {
+    expect(placed(LINEAR, 'insertion', [30, -60, 60])).toEqual({ insertion: [30, -60, 60] });
+    expect(led(LINEAR, 'radius', through(placeOf(LINEAR, 'radius')))).toEqual({ radius: 70 });
+    expect(led(RING, 'semi_minor', through(placeOf(RING, 'semi_minor')))).toEqual({
+      semi_minor: 20,
+    });
+    const angle = placeOf(LINEAR, 'angle');
+    const out: Point = [Math.SQRT1_2, 0, Math.SQRT1_2];
+    const ray = {
+      origin: angle.map((value, at) => value + 90 * out[at]!) as unknown as Point,
+      direction: out.map((value) => -value) as unknown as Point,
+    };
+    expect(led(LINEAR, 'angle', ray).angle).toBeCloseTo(20, 0);
+  });
+
+  it('keep a muscle one that the service takes', () => {
+    expect(placed(LINEAR, 'insertion', [0, -100, 60]).radius).toBeGreaterThan(100);
+    expect(led(LINEAR, 'radius', through([60, -20, 60])).radius).toBeGreaterThan(50);
+    expect(led(RING, 'semi_major', through([900, -70, 0])).semi_major).toBe(80);
+  });
+
+  it('move one end of a sheet and leave the other', () => {
+    expect(placed(SHEET, 'attachment.1', [22, 61, 88])).toEqual({
+      attachment: [
+        [0, 60, 90],
+        [22, 61, 88],
+      ],
+    });
+  });
+
+  it('outline where a muscle acts', () => {
+    const [fibre, sector] = zoneOf(LINEAR);
+    expect(fibre).toEqual([LINEAR.attachment, LINEAR.insertion]);
+    for (const point of sector!.slice(1, -1)) {
+      const off = point.map((value, axis) => value - (LINEAR.attachment as Point)[axis]!);
+      expect(Math.hypot(...off)).toBeCloseTo(70);
+    }
+  });
+
+  it('are mirrored for the other side', () => {
+    expect(mirroredChange({ attachment: [1, 2, 3], radius: 4 })).toEqual({
+      attachment: [-1, 2, 3],
+      radius: 4,
+    });
+    expect(
+      mirroredChange({
+        insertion: [
+          [1, 2, 3],
+          [4, 5, 6],
+        ],
+      }),
+    ).toEqual({
+      insertion: [
+        [-1, 2, 3],
+        [-4, 5, 6],
+      ],
+    });
+  });
+});
+
+describe('Newest', () => {
+  it('has one change under way, and sends what came meanwhile as one', async () => {
+    const sent: [string, object][] = [];
+    const failures: string[] = [];
+    let answer: (() => void) | null = null;
+    const newest = new Newest<{ radius?: number; angle?: number }>(
+      (key, change) => {
+        sent.push([key, change]);
+        return new Promise((resolve, reject) => {
+          answer =
+            change.angle === 0
+              ? () => {
+                  reject(new Error('no'));
+                }
+              : () => {
+                  resolve(null);
+                };
+        });
+      },
+      (key) => failures.push(key),
+    );
+    const answered = async (): Promise<void> => {
+      answer!();
+      await new Promise((resolve) => setTimeout(resolve));
+    };
+    newest.put('a', { radius: 1 });
+    newest.put('a', { radius: 2 });
+    newest.put('a', { radius: 3, angle: 0 });
+    expect(sent).toEqual([['a', { radius: 1 }]]);
+    await answered();
+    expect(sent.at(-1)).toEqual(['a', { radius: 3, angle: 0 }]);
+    newest.put('b', { radius: 5 });
+    await answered();
+    expect(failures).toEqual(['a']);
+    expect(sent.at(-1)).toEqual(['b', { radius: 5 }]);
+    expect(newest.idle).toBe(false);
+    await answered();
+    expect(newest.idle).toBe(true);
+    expect(sent).toHaveLength(3);
+  });
+});
