@@ -268,7 +268,9 @@ class EmotionCommand(Write):
     )
     valence: Coordinate | None = Field(default=None, description="Pleasure; takes arousal too.")
     arousal: Coordinate | None = None
-    dominance: Coordinate | None = Field(default=None, description="Or potency; 0 if left out.")
+    dominance: Coordinate | None = Field(
+        default=None, description="Or potency; what goes with the other two if left out."
+    )
     seed: Annotated[int, Field(strict=True, ge=0, le=_MOST)] | None = Field(
         default=None,
         description="Chooses among a recipe's variants, 0 the first; without it, a label that is "

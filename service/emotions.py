@@ -143,7 +143,7 @@ def _resolved(command: EmotionCommand, rig: Rig, turns: Turns) -> Resolved:
         return resolve_coordinates(
             command.valence or 0.0,
             command.arousal or 0.0,
-            command.dominance or 0.0,
+            command.dominance,
             turn=lambda _: seed,
         )
     except EngineError as error:

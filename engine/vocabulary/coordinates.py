@@ -17,6 +17,28 @@ _AT = 1e-9
 """Distance at which a point is the anchor itself."""
 
 
+def dominance_with(valence: float, arousal: float, recipes: Iterable[Recipe]) -> float:
+    """Return the dominance that goes with a point of the plane, -1..1, smooth in it.
+
+    The mean of the anchors' by inverse squared distance on the plane, at an anchor its own.
+    Happiness and surprise, fear and anger lie beside one another there and differ by it: with none,
+    joy would be surprise.
+
+    Args:
+        valence: Pleasure, -1..1.
+        arousal: -1..1.
+        recipes: Those that are no anchors are left out.
+    """
+    places = np.array([recipe.place for recipe in recipes if recipe.anchor])
+    away = np.linalg.norm(places[:, :2] - np.array([valence, arousal]), axis=1)
+    nearest = int(away.argmin())
+    if away[nearest] < _AT:
+        return float(places[nearest, 2])
+    # Taken by the nearest one's, so that no power overflows close to it.
+    weights = (away[nearest] / away) ** 2.0
+    return float(weights @ places[:, 2] / weights.sum())
+
+
 def shares_around(point: FloatArray, recipes: Iterable[Recipe]) -> list[tuple[str, float]]:
     """Return the anchors near `point` with their shares, which add up to 1, greatest first.
 

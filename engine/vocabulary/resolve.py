@@ -11,7 +11,7 @@ import numpy as np
 from ..emotion import Emotion
 from ..errors import InvalidValue
 from ..facs import NEUTRAL, Term, format_facs, nearest_letter, split_side
-from .coordinates import shares_around
+from .coordinates import dominance_with, shares_around
 from .lexicon import lexicon
 from .meaning import Meaning
 from .mixture import HALVES, mixed
@@ -164,17 +164,19 @@ def resolve_scores(
 
 
 def resolve_coordinates(
-    valence: float, arousal: float, dominance: float = 0.0, *, turn: Turn = first
+    valence: float, arousal: float, dominance: float | None = None, *, turn: Turn = first
 ) -> Resolved:
     """Return the expression of a point among feelings, continuous in it.
 
     Args:
         valence: Pleasure, -1..1.
         arousal: -1..1.
-        dominance: Or potency, -1..1.
+        dominance: Or potency, -1..1; what goes with the other two if None.
         turn: Chooses among a recipe's variants.
     """
     recipes = lexicon().recipes
+    if dominance is None:
+        dominance = dominance_with(valence, arousal, recipes.values())
     point = np.array([valence, arousal, dominance], dtype=np.float64)
     parts = [
         part

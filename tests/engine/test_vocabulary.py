@@ -297,3 +297,23 @@ def test_recipes_settle_without_folds_and_without_teeth_through_the_lips(standar
         assert flesh.folds == {}, form
         assert flesh.through == {}, form
         assert flesh.speed < 5.0, form
+
+
+@pytest.mark.parametrize(
+    ("valence", "arousal", "meant"),
+    [
+        (0.8, 0.5, "happiness"),
+        (-0.5, 0.6, "anger"),
+        (-0.7, -0.3, "sadness"),
+    ],
+)
+def test_a_point_without_dominance_is_the_feeling_that_lies_there(valence, arousal, meant):
+    resolved = resolve_coordinates(valence, arousal)
+    assert resolved.parts[0].recipe == meant
+
+
+def test_dominance_that_is_left_out_is_that_of_the_anchor_at_the_point():
+    for recipe in lexicon().recipes.values():
+        if recipe.anchor:
+            parts = resolve_coordinates(*recipe.place[:2].tolist()).parts
+            assert max(parts, key=lambda part: part.weight).recipe == recipe.name, recipe.name
