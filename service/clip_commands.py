@@ -12,8 +12,9 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from engine import EngineError
 
-from .clip_files import Rendered, Wanted, files_of, outputs_of, render_many, render_one, usual_jobs
+from .clip_files import Rendered, Wanted, files_of, outputs_of, render_many, render_one
 from .rendering import ClipRefused
+from .side_by_side import usual_jobs
 from .terminal import REFUSED, console
 from .track_rendering import report_tables
 

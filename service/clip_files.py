@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import glob
-import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
-from multiprocessing import get_context
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from engine import CLIP_FORMS, LEVELS, EngineError, TrackOptions, TrackReport
 
 from .clip_sheet import draw_clip
 from .playing_again import is_clip, render_again
 from .rendering import ClipRefused, Show, render_by_service, render_file, truth_of
+from .side_by_side import side_by_side
 from .track_rendering import SUFFIXES, is_track, render_track_file
 from .track_sending import render_track_by_service
 
 _TIMELINE = ".json"
 _TRUTH = ".truth.csv"
 _PATTERN = "*?["
-Given = TypeVar("Given")
-Got = TypeVar("Got")
 
 
 @dataclass(frozen=True)
@@ -51,6 +47,15 @@ class Wanted:
     key: str = ""
     options: TrackOptions = field(default_factory=TrackOptions)
     told: Mapping[str, Any] = field(default_factory=dict)
+
+    def common(self) -> dict[str, Any]:
+        """Return what timelines and trackers' files are rendered with alike, here or elsewhere."""
+        return {
+            "rig": self.rig,
+            "fps": self.fps,
+            "textured": self.textured,
+            "told": self.told,
+        }
 
 
 @dataclass(frozen=True)
@@ -119,27 +124,10 @@ def render_one(source: Path, output: Path, wanted: Wanted, show: Show) -> Render
         made = render_again(source, output, show=show, csv=truth)
     elif is_track(source):
         made, report = render_track_file(
-            source,
-            output,
-            options=wanted.options,
-            rig=wanted.rig,
-            fps=wanted.fps,
-            show=show,
-            textured=wanted.textured,
-            csv=truth,
-            told=wanted.told,
+            source, output, options=wanted.options, show=show, csv=truth, **wanted.common()
         )
     else:
-        made = render_file(
-            source,
-            output,
-            rig=wanted.rig,
-            fps=wanted.fps,
-            show=show,
-            textured=wanted.textured,
-            csv=truth,
-            told=wanted.told,
-        )
+        made = render_file(source, output, show=show, csv=truth, **wanted.common())
     line = made.line
     if wanted.png:
         picture = output.with_suffix(".png")
@@ -153,31 +141,11 @@ def _by_service(source: Path, output: Path, wanted: Wanted, show: Show) -> Rende
         raise ClipRefused("A clip is rendered here: leave --url out.")
     if wanted.csv or wanted.png:
         raise ClipRefused("Ground truth and pictures are made here: leave --url out.")
+    where = {"url": wanted.url, "key": wanted.key, "show": show, **wanted.common()}
     if is_track(source):
-        made, report = render_track_by_service(
-            source,
-            output,
-            url=wanted.url,
-            key=wanted.key,
-            options=wanted.options,
-            rig=wanted.rig,
-            fps=wanted.fps,
-            show=show,
-            textured=wanted.textured,
-            told=wanted.told,
-        )
+        made, report = render_track_by_service(source, output, options=wanted.options, **where)
         return Rendered(made.line, made.figures, report)
-    made = render_by_service(
-        source,
-        output,
-        url=wanted.url,
-        key=wanted.key,
-        rig=wanted.rig,
-        fps=wanted.fps,
-        show=show,
-        textured=wanted.textured,
-        told=wanted.told,
-    )
+    made = render_by_service(source, output, **where)
     return Rendered(made.line, made.figures)
 
 
@@ -260,32 +228,3 @@ def _render(work: tuple[Path, Path, Wanted]) -> Rendered | ClipRefused:
         return refused
     except EngineError as error:
         return ClipRefused(f"{work[0]} cannot be rendered: {error}.")
-
-
-def side_by_side(
-    make: Callable[[Given], Got], work: Iterable[Given], *, jobs: int
-) -> Iterator[tuple[int, Got | BrokenProcessPool]]:
-    """Yield the number of each piece of work and what `make` returns of it, in processes.
-
-    Args:
-        make: A function that can be pickled.
-        work: What it is called with.
-        jobs: How many at a time.
-    """
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        numbers = {pool.submit(make, piece): number for number, piece in enumerate(work)}
-        try:
-            for done in as_completed(numbers):
-                try:
-                    yield numbers[done], done.result()
-                except BrokenProcessPool as broken:
-                    yield numbers[done], broken
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-
-
-def usual_jobs() -> int:
-    """Return how many files are made at a time: one a core that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

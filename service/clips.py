@@ -6,24 +6,23 @@ import asyncio
 import copy
 import secrets
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import structlog
 from pydantic import ValidationError
 
-from engine import EngineError, Rig, Timeline
+from engine import EngineError, Rig
 
 from .access import EVERYTHING, Access
-from .bodies import ModelChoice, NewClip
+from .bodies import NewClip
 from .clip_folder import GIVEN, TRACK, ClipFolder
 from .clip_jobs import ClipJob
-from .commands import clip_timeline, how_told, live_model
-from .errors import Busy, Conflict, NotFound, Refused, Unprocessable
+from .clip_requests import Bounds, Played, played_by, request_of
+from .commands import how_told, live_model
+from .errors import Busy, Conflict, NotFound, Refused
 from .explaining import explain
-from .idle import seed_of, with_life
 from .render_process import Order
 from .renderer import Renderer, RenderingEnded
 from .rigs import Rigs
@@ -36,7 +35,6 @@ _LOG = structlog.get_logger("clips")
 FINISHED = ("done", "failed", "cancelled")
 """States of a clip that has ended."""
 DAY_SECONDS = 86_400.0
-_USUAL = ModelChoice()
 _SWEEP_SECONDS = 60.0
 """After which it is looked again for clips that were kept for long enough."""
 
@@ -68,8 +66,7 @@ class Clips:
         self._files = ClipFolder(folder)
         self._limit = limit
         self._queue_limit = queue_limit
-        self._max_seconds = max_seconds
-        self._max_keyframes = max_keyframes
+        self._bounds = Bounds(max_seconds, max_keyframes)
         self._kept_seconds = kept_seconds
         self._on_end = on_end
         self._free = asyncio.Semaphore(processes)
@@ -93,7 +90,7 @@ class Clips:
         for row in self._store.clips():
             if row.status not in FINISHED:
                 try:
-                    request = _request_of(row)
+                    request = request_of(row)
                 except ValidationError as error:
                     why = explain(error.errors(), row.request)
                     self._fail(row.id, f"this version cannot read it: {why}")
@@ -121,9 +118,9 @@ class Clips:
         """
         self._access.check_whole()
         rig = await self._rigs.get(clip.rig)
-        timeline, _ = self._checked(clip, rig)
+        played = played_by(clip, rig, self._bounds)
         self._check_room()
-        return self._queue(clip, rig, timeline.duration)
+        return self._queue(clip, rig, played.timeline.duration)
 
     async def submit_track(self, clip: TrackClip, upload: Upload) -> ClipRow:
         """Read a tracker's file to its end and queue the clip of it; the file is kept until then.
@@ -136,7 +133,7 @@ class Clips:
         """
         self._access.check_whole()
         rig = await self._rigs.get(clip.rig)
-        options = options_of(clip, self._max_seconds)
+        options = options_of(clip, self._bounds.seconds)
         self._check_room()
         try:
             async with self._reading:  # Not behind clips that are being rendered.
@@ -334,7 +331,11 @@ class Clips:
     ) -> Mapping[str, Any]:
         rig = await self._rigs.get(request.rig)
         root, steps = await self._rigs.made_from(request.rig)
-        played = self._played(clip, request, rig)
+        if isinstance(request, TrackClip):
+            options = options_of(request, self._bounds.seconds)
+            played: Played[Any] = Played(TrackFile(self._files.path(clip, TRACK), options))
+        else:
+            played = played_by(request, rig, self._bounds)
         textures = await self._rigs.textures(rig) if request.textures else {}
         await asyncio.to_thread(self._files.folder.mkdir, parents=True, exist_ok=True)
         order = Order(
@@ -361,58 +362,7 @@ class Clips:
             "warnings": [*played.warnings, *notes],
         }
 
-    def _played(self, clip: str, request: NewClip | TrackClip, rig: Rig) -> _Played:
-        """Return what a clip plays.
-
-        Raises:
-            Unprocessable: If it cannot be played, or is too long.
-        """
-        if isinstance(request, TrackClip):
-            options = options_of(request, self._max_seconds)
-            return _Played(TrackFile(self._files.path(clip, TRACK), options))
-        timeline, warnings = self._checked(request, rig)
-        scales = sorted({keyframe.scale for keyframe in request.timeline})
-        seed = seed_of(request)
-        return _Played(timeline, request.model, request.start, seed, scales, warnings)
-
-    def _checked(self, clip: NewClip, rig: Rig) -> tuple[Timeline, list[str]]:
-        if len(clip.timeline) > self._max_keyframes:
-            message = f"timeline: {len(clip.timeline)} keyframes; at most {self._max_keyframes}"
-            raise Unprocessable("too_many_keyframes", message)
-        timeline, warnings = clip_timeline(clip, rig)
-        if timeline.duration > self._max_seconds:
-            message = f"the clip lasts {timeline.duration:g} s; at most {self._max_seconds:g} s"
-            if clip.start:
-                message += f", with the {clip.start:g} s that are played before it begins"
-            raise Unprocessable("clip_too_long", message)
-        return with_life(timeline, clip, rig), warnings
-
     def _fail(self, clip: str, message: str) -> None:
         self._store.keep_clip(clip, status="failed", message=message)
         self._files.remove(clip)
         self._on_end("failed")
-
-
-@dataclass(frozen=True)
-class _Played:
-    """What a clip plays: by which physics, from when on, by which seed, and what is said of it."""
-
-    timeline: Timeline | TrackFile
-    model: ModelChoice = _USUAL
-    start: float = 0.0
-    seed: int | None = None
-    scales: Sequence[str] = ()
-    warnings: Sequence[str] = ()
-
-
-def _request_of(row: ClipRow) -> NewClip | TrackClip:
-    """Return what was asked for.
-
-    Raises:
-        ValidationError: If it was another version that was asked.
-    """
-    if "timeline" in row.request:
-        return NewClip.model_validate(row.request)
-    # How long it is was read of its file, and is kept for what its key may take.
-    asked = {name: value for name, value in row.request.items() if name != "duration"}
-    return TrackClip.model_validate(asked)

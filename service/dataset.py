@@ -20,7 +20,6 @@ from typing import Any
 from engine import ENGINE_HASH, EngineError, builtin_rig, version
 
 from .bodies import NewClip
-from .clip_files import side_by_side
 from .commands import clip_timeline, how_told, live_model
 from .dataset_plan import DatasetPlan
 from .deriving import made_from
@@ -28,6 +27,7 @@ from .errors import Refused
 from .idle import seed_of, with_life
 from .render_process import Order, carry_out
 from .rendering import Show, maps_of
+from .side_by_side import side_by_side
 
 PLAN, MANIFEST = "dataset.json", "manifest.jsonl"
 _HALF = re.compile(r"\d{6,}\.(glb|csv)\.\d+")

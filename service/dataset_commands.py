@@ -41,9 +41,9 @@ def dataset(
     """Make labelled clips, GLB and ground truth, over people and expressions; go on if begun."""
     from engine import LEVELS
 
-    from .clip_files import usual_jobs
     from .dataset import DatasetRefused, make_dataset
     from .dataset_plan import DatasetPlan
+    from .side_by_side import usual_jobs
 
     if level not in LEVELS:
         refuse(f"There is no level {level!r}; there are {', '.join(LEVELS)}.")

@@ -52,7 +52,7 @@ class Order:
         glb: File to write.
         csv: File for its ground truth, if wanted.
         seed: Of the idle life in the timeline, which the file tells.
-        form, tolerance, quantize, sparse: How the file tells the motion, as `clip_to_glb` says.
+        form, tolerance, quantize, sparse: How the file tells the motion, as `clip_file` says.
     """
 
     root: str

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypedDict, Unpack
 
 import numpy as np
 
@@ -52,7 +53,30 @@ class ClipFile:
     write_seconds: float
 
 
-def clip_to_glb(
+class FileOptions(TypedDict, total=False):
+    """How a clip is written, as `clip_file` says."""
+
+    form: str
+    tolerance: float
+    quantize: bool
+    sparse: bool
+    textures: Textures | None
+    origin: Origin | None
+    seed: int | None
+    progress: Progress | None
+    cancelled: Callable[[], bool] | None
+
+
+def clip_to_glb(clip: Clip, **options: Unpack[FileOptions]) -> bytes:
+    """Return `clip` as GLB, as `clip_file` does.
+
+    Raises:
+        UnknownName, InvalidValue, Cancelled: As `clip_file`.
+    """
+    return clip_file(clip, **options).data
+
+
+def clip_file(
     clip: Clip,
     *,
     form: str = "basis",
@@ -64,8 +88,8 @@ def clip_to_glb(
     seed: int | None = None,
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
-) -> bytes:
-    """Return `clip` as GLB: one animation, a key per frame.
+) -> ClipFile:
+    """Return `clip` as GLB, one animation with a key per frame, and what is to be told of it.
 
     "basis" has few morph targets, a basis of the simulated motion with as few shapes as keep every
     vertex of every frame within `tolerance`; "arkit" has ARKit's 52 by name, with weights fitted
@@ -92,38 +116,6 @@ def clip_to_glb(
         UnknownName: There is no such form.
         InvalidValue: The tolerance is out of range, or the clip too long for "exact".
         Cancelled: `cancelled` said so.
-    """
-    return clip_file(
-        clip,
-        form=form,
-        tolerance=tolerance,
-        quantize=quantize,
-        sparse=sparse,
-        textures=textures,
-        origin=origin,
-        seed=seed,
-        progress=progress,
-        cancelled=cancelled,
-    ).data
-
-
-def clip_file(
-    clip: Clip,
-    *,
-    form: str = "basis",
-    tolerance: float = 0.1,
-    quantize: bool = True,
-    sparse: bool = True,
-    textures: Textures | None = None,
-    origin: Origin | None = None,
-    seed: int | None = None,
-    progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
-) -> ClipFile:
-    """Return `clip` as GLB with what is to be told of it, as `clip_to_glb` does.
-
-    Raises:
-        UnknownName, InvalidValue, Cancelled: As `clip_to_glb`.
     """
     _check(form, tolerance)
     packing = Packing(quantize, sparse, tolerance)
