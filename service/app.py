@@ -110,11 +110,16 @@ class _ViewerMount(Mount):
 class _ViewerFiles(StaticFiles):
     """The built viewer: named by content, so that only its page is asked for again."""
 
+    def __init__(self, settings: Settings) -> None:
+        super().__init__(directory=settings.viewer_dir, html=True)
+        # Whose pages may drive a face may show it, too; nobody else's can lay it under a click.
+        self._holders = " ".join(("'self'", *settings.allowed_origins))
+
     async def get_response(self, path: str, scope: Scope) -> Response:
         """Return a file, with the headers that a page on a local address needs."""
         response = await super().get_response(path, scope)
         response.headers["X-Content-Type-Options"] = "nosniff"
-        response.headers["Content-Security-Policy"] = "frame-ancestors 'none'"
+        response.headers["Content-Security-Policy"] = f"frame-ancestors {self._holders}"
         # The address of the page may hold a ticket.
         response.headers["Referrer-Policy"] = "same-origin"
         fixed = path.startswith("assets/")
@@ -124,7 +129,7 @@ class _ViewerFiles(StaticFiles):
 
 def _mount_viewer(app: FastAPI, settings: Settings) -> None:
     if (settings.viewer_dir / "index.html").is_file():
-        files = _ViewerFiles(directory=settings.viewer_dir, html=True)
+        files = _ViewerFiles(settings)
         app.router.routes.append(_ViewerMount("/", files, name="viewer"))
         return
 

@@ -14,6 +14,13 @@ export default defineConfig({
     target: 'es2022',
     // three.js is one library that is needed at once; splitting it would only add a round trip.
     chunkSizeWarningLimit: 1000,
+    rolldownOptions: {
+      input: { index: 'index.html', embed: 'src/embed.ts' },
+      // Other pages name it in their source: it keeps its name.
+      output: {
+        entryFileNames: ({ name }) => (name === 'embed' ? 'embed.js' : 'assets/[name]-[hash].js'),
+      },
+    },
   },
   server: {
     proxy: { '/api': { target: SERVICE, ws: true, changeOrigin: true } },

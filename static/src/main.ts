@@ -6,6 +6,7 @@ import { editByPointer } from './app/handle-pointer';
 import { HeatOverlay } from './app/heat-overlay';
 import { insideActions } from './app/inside-actions';
 import { LayerOverlay } from './app/layer-overlay';
+import { embed } from './app/embedding';
 import { loadFeelings, loadPeople } from './app/lists';
 import { mountControls, mountCurtain } from './app/mounting';
 import { MuscleEditing } from './app/muscle-editing';
@@ -47,9 +48,11 @@ const viewer = new ViewerState();
 viewer.rigName = page.rig;
 viewer.view = page.view;
 viewer.light = page.light;
-viewer.theme = keptTheme();
+// A page inside another one may be kept from its storage.
+viewer.theme = page.embed ? 'auto' : keptTheme();
 document.body.classList.toggle('bare', page.bare);
-if (page.bare) document.documentElement.dataset.theme = 'dark';
+document.documentElement.classList.toggle('embed', page.embed);
+if (page.bare && !page.embed) document.documentElement.dataset.theme = 'dark';
 
 const opening = new Opening(page, api, viewer, curtain.close);
 const connection: Connection = new Connection({
@@ -192,6 +195,7 @@ function loadLists(): void {
 }
 
 provideHandle(viewer, stage, told, editing);
+if (page.embed) embed(viewer, connection, commands, () => stage.frameSeen);
 mountCurtain(viewer, actions);
 if (!page.bare) {
   editByPointer(document.getElementById('face') as HTMLCanvasElement, viewer, editing);

@@ -11,6 +11,8 @@ export interface PageOptions {
   rig: string;
   /** No panels, fixed camera: for contact sheets and tests. */
   bare: boolean;
+  /** The face alone, before whatever lies behind it on the page that holds this one; see embed.ts. */
+  embed: boolean;
   /** Whether a face that the page opens lives by itself; `idle=0` opens one at rest. */
   idle: boolean;
   /** Draw only when `__viewer.render()` asks: for pictures, where each costs seconds. */
@@ -37,7 +39,8 @@ export function readPageOptions(search: string): PageOptions {
   return {
     session: session !== null && /^[a-z0-9_-]{1,64}$/.test(session) ? session : null,
     rig: query.get('rig') ?? DEFAULT_RIG,
-    bare: query.get('bare') === '1',
+    bare: query.get('bare') === '1' || query.get('embed') === '1',
+    embed: query.get('embed') === '1',
     idle: query.get('idle') !== '0',
     still: query.get('still') === '1',
     view: isView(view) || (view !== '' && Math.abs(Number(view)) <= 180) ? view : 'front',

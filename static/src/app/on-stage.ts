@@ -134,7 +134,7 @@ export class OnStage {
   /** What the device can do; a picture of the page shows all that there is. */
   chooseLevel(): Level {
     const { page } = this.options;
-    if (page.level !== null || page.bare) return page.level ?? 'high';
+    if (page.level !== null || (page.bare && !page.embed)) return page.level ?? 'high';
     const { deviceMemory } = navigator as Navigator & { deviceMemory?: number };
     return levelFor({
       memory: deviceMemory ?? null,
@@ -156,11 +156,11 @@ export class OnStage {
       return new Scene(canvas, {
         orbit: !page.bare,
         pixelRatio: page.pixelRatio,
-        adaptive: !page.bare,
+        adaptive: !page.bare || page.embed,
         still: page.still,
         view: page.view,
         light: page.light,
-        ground: page.bare ? 'dark' : useTheme(viewer.theme),
+        ground: page.embed ? 'none' : page.bare ? 'dark' : useTheme(viewer.theme),
         onTurning: (turning) => (viewer.turning = turning),
         onTrouble: (sentence) => {
           viewer.say(sentence);
@@ -224,7 +224,8 @@ export class OnStage {
 
 /** A visitor sees the maps fade in; a picture of the page need not wait, nor who wants no motion. */
 export function moving(page: PageOptions): boolean {
-  return !page.bare && !window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+  const picture = page.bare && !page.embed;
+  return !picture && !window.matchMedia('(prefers-reduced-motion: reduce)').matches;
 }
 
 /** Let the page show what was drawn, before it is kept busy again. */

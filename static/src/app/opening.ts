@@ -25,7 +25,7 @@ export class Opening {
     private readonly onLocked: () => void,
   ) {
     this.session = page.session ?? '';
-    api.key = window.sessionStorage.getItem(KEY_PLACE) ?? '';
+    if (!page.embed) api.key = window.sessionStorage.getItem(KEY_PLACE) ?? '';
   }
 
   /** Whether the page came by a link for one face. */
@@ -51,7 +51,7 @@ export class Opening {
 
   useKey(key: string): void {
     this.api.key = key;
-    window.sessionStorage.setItem(KEY_PLACE, key);
+    if (!this.page.embed) window.sessionStorage.setItem(KEY_PLACE, key);
   }
 
   /** A link for others. Where no key is asked for, the page's own address moves the face. */
@@ -92,7 +92,9 @@ export class Opening {
         await api.takeTicket(known.id);
         return this.streamOf(known);
       }
-      if (this.isGuest) throw new ApiError(404, 'This face was closed.');
+      // An element that was given a face shows that one, or none.
+      const given = this.page.embed && this.session === this.page.session;
+      if (this.isGuest || given) throw new ApiError(404, 'This face was closed.');
     }
     viewer.step = { words: `Preparing ${this.who}`, share: null };
     void this.tellOfStart();

@@ -1,0 +1,61 @@
+// A page inside <risorius-face>: tells the page around how it is, obeys it, and rests while nobody sees it.
+
+import type { Commands } from '../commands';
+import type { Connection } from '../connection';
+import type { ViewerState } from '../state/viewer.svelte';
+
+const TELL_MS = 250;
+
+interface Wish {
+  risorius?: unknown;
+  label?: unknown;
+  intensity?: unknown;
+}
+
+/** Stand in the element, as long as the page lives. */
+export function embed(
+  viewer: ViewerState,
+  connection: Connection,
+  commands: Commands,
+  isReady: () => boolean,
+): void {
+  let told = '';
+  let last = 'opening';
+  let seen = true;
+  const tell = (): void => {
+    // Between two attempts nothing is better than before them.
+    const held = viewer.status === 'connecting' && last === 'waiting';
+    const open = isReady() && viewer.status === 'open';
+    const state = !seen ? 'resting' : open ? 'ready' : held ? last : stateOf(viewer);
+    last = state;
+    const words = viewer.locked || viewer.notice || viewer.detail;
+    const key = `${state} ${viewer.session} ${words}`;
+    if (key === told) return;
+    told = key;
+    // Whoever shows the face may know how it is; there is nothing secret in it.
+    window.parent.postMessage({ risorius: 'state', state, session: viewer.session, words }, '*');
+  };
+  window.setInterval(tell, TELL_MS);
+  window.addEventListener('message', ({ source, data }: MessageEvent) => {
+    const wish = data as Wish | null;
+    if (source !== window.parent || wish?.risorius !== 'emotion') return;
+    if (typeof wish.label !== 'string' || typeof wish.intensity !== 'number') return;
+    const intensity = Math.min(1, Math.max(0, wish.intensity));
+    if (wish.label === '' || !Number.isFinite(intensity)) commands.stopEmotion();
+    else commands.playEmotion(wish.label, intensity);
+  });
+  new IntersectionObserver(([entry]) => {
+    const now = entry?.isIntersecting ?? true;
+    if (now === seen) return;
+    seen = now;
+    if (seen) connection.connect();
+    else connection.close();
+    tell();
+  }).observe(document.body);
+}
+
+function stateOf({ status, locked }: ViewerState): string {
+  if (locked !== '') return 'locked';
+  if (status === 'waiting') return 'waiting';
+  return status === 'closed' ? 'closed' : 'opening';
+}
