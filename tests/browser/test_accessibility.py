@@ -10,7 +10,7 @@ from viewer_page import settle
 
 pytestmark = pytest.mark.browser
 AXE = Path(__file__).parents[2] / "static" / "node_modules" / "axe-core" / "axe.min.js"
-TABS = ("Action units", "Person", "Pose", "Muscles", "Tissue")
+TABS = ("Action units", "Person", "Pose", "Muscles", "Tissue", "Inside")
 
 
 def faults(page: playwright_api.Page, where: str) -> list[str]:
