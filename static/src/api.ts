@@ -1,5 +1,6 @@
 // REST calls of the viewer, and the addresses it links to.
 
+import { ClipJobs } from './clip-jobs';
 import type { FaceState } from './protocol';
 import type { AttributeInfo, Recipe } from './recipe';
 import type { Place } from './feelings';
@@ -55,13 +56,6 @@ export interface ReadFacs {
   warnings: { message: string }[];
 }
 
-interface ClipInfo {
-  id: string;
-  status: 'queued' | 'running' | 'done' | 'failed' | 'cancelled';
-  progress?: number;
-  message?: string;
-}
-
 export interface SessionInfo extends FaceState {
   id: string;
   rig: string;
@@ -94,6 +88,7 @@ export class Api {
   key = '';
   /** A ticket for the session that is shown, for what takes no headers. */
   ticket = '';
+  readonly clips = new ClipJobs((method, path, body) => this.ask(method, path, body));
 
   /** @param base address of the page, e.g. `https://host/face/`; the API lies beside it under `api/`. */
   constructor(private readonly base: string) {}
@@ -190,24 +185,6 @@ export class Api {
     return (issued as { url: string }).url;
   }
 
-  /**
-   * Have a clip rendered.
-   * @param onProgress told how far it is, 0 to 1.
-   * @returns its GLB file.
-   */
-  async renderClip(clip: object, onProgress: (share: number) => void): Promise<Blob> {
-    let asked = (await this.json('POST', 'api/clips', clip)) as ClipInfo;
-    while (asked.status === 'queued' || asked.status === 'running') {
-      onProgress(asked.progress ?? 0);
-      asked = (await this.json('GET', `api/clips/${asked.id}?wait=1`)) as ClipInfo;
-    }
-    if (asked.status !== 'done') {
-      throw new ApiError(0, `The clip is not rendered: ${asked.message ?? asked.status}.`);
-    }
-    const response = await this.ask('GET', `api/clips/${asked.id}.glb`);
-    return response.blob();
-  }
-
   closeSession(id: string): Promise<unknown> {
     return this.json('DELETE', `api/sessions/${id}`);
   }
@@ -244,14 +221,15 @@ export class Api {
   /** @throws ApiError for every answer that is not 2xx, and for none. */
   private async ask(method: string, path: string, body?: unknown): Promise<Response> {
     let response: Response;
+    const isFile = body instanceof Blob;
     try {
       response = await fetch(this.address(path), {
         method,
         headers: {
           ...(this.key === '' ? {} : { Authorization: `Bearer ${this.key}` }),
-          ...(body === undefined ? {} : { 'Content-Type': 'application/json' }),
+          ...(body === undefined || isFile ? {} : { 'Content-Type': 'application/json' }),
         },
-        ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+        ...(body === undefined ? {} : { body: isFile ? body : JSON.stringify(body) }),
       });
     } catch {
       throw new ApiError(0, 'The service does not answer.');

@@ -8,8 +8,40 @@ export interface Keyframe {
   [field: string]: unknown;
 }
 
+export const FORMS = [
+  { form: 'basis', label: 'Few targets', title: 'As few morph targets as keep within the error' },
+  {
+    form: 'arkit',
+    label: "ARKit's",
+    title: 'The 52 shapes of ARKit by name, fitted to each frame',
+  },
+  { form: 'exact', label: 'Exact', title: 'A morph target for each frame' },
+] as const;
+export const LEVELS = ['low', 'medium', 'high'] as const;
+
+/** How the file of a clip is to be; see docs/clips.md. */
+export interface ClipOptions {
+  form: (typeof FORMS)[number]['form'];
+  level: (typeof LEVELS)[number];
+  fps: number;
+  /** Largest error of any vertex with the form `basis` [mm]. */
+  tolerance: number;
+  textures: boolean;
+  sparse: boolean;
+}
+
+/** As the service takes them where nothing is said. */
+export const USUAL: ClipOptions = {
+  form: 'basis',
+  level: 'medium',
+  fps: 30,
+  tolerance: 0.1,
+  textures: true,
+  sparse: true,
+};
+
 /** The body of `POST /api/clips`, and the file of `risorius clip`. */
-export interface Clip {
+export interface Clip extends Partial<ClipOptions> {
   rig: string;
   fps: number;
   duration: number;

@@ -166,10 +166,14 @@ const actions: Actions = {
     performer,
     held: () => commands.held(),
     rig: () => ({ id: told.rigId, name: viewer.rig?.name ?? 'face' }),
-    render: (clip, onProgress) => api.renderClip(clip, onProgress),
+    render: (clip, waiting) => api.clips.render(clip, waiting),
+    read: (file, rig, waiting) => api.clips.read(file, rig, waiting),
     offer,
     failed: (error) => {
       viewer.sayWhy(error);
+    },
+    tell: (sentence) => {
+      viewer.tell(sentence);
     },
   }),
   reset() {

@@ -15,7 +15,6 @@ import type { Actions } from '../state/actions';
 import { shortcutsOf } from '../state/keys';
 import type { TimelineState } from '../state/timeline.svelte';
 import type { ViewerState } from '../state/viewer.svelte';
-import { takeOf } from '../take-of-clip';
 import { curtain } from './curtain';
 
 const element = (id: string): HTMLElement => document.getElementById(id)!;
@@ -45,7 +44,9 @@ export function mountControls(
   mount(People, { target: element('people'), props: { viewer, actions, link } });
   mount(Timeline, { target: element('timeline'), props: { viewer, timeline, actions } });
   takeDrops(
-    (file) => void openFile(file, viewer, timeline),
+    (file) => {
+      actions.openTake(file);
+    },
     (over) => document.body.classList.toggle('dropping', over),
   );
   const shortcuts = shortcutsOf(viewer, actions);
@@ -56,14 +57,4 @@ export function mountControls(
   mount(StageLegend, { target: legend, props: { viewer } });
   mount(Keys, { target: document.body, props: { viewer, shortcuts } });
   mount(Panels, { target: element('panels'), props: { viewer, actions, link } });
-}
-
-/** Put a timeline that was saved on the timeline again. */
-async function openFile(file: File, viewer: ViewerState, timeline: TimelineState): Promise<void> {
-  try {
-    timeline.use(takeOf(await file.text()));
-    viewer.tell(`${file.name} is in the timeline.`);
-  } catch (error) {
-    viewer.sayWhy(error);
-  }
 }

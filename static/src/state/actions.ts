@@ -61,6 +61,10 @@ export interface Actions {
   /** Leave out what is not between beginning and end. */
   trimTake(): void;
   exportTake(form: 'glb' | 'json'): void;
+  /** Put a timeline that was saved on the timeline, or play what a tracker wrote. */
+  openTake(file: File): void;
+  /** Wait no longer for an export, or for a file that is read. */
+  cancelTake(): void;
   /** Let go of every control. */
   reset(): void;
   /** Leave the pause between attempts and connect now. */

@@ -1,5 +1,7 @@
 // The take under the face, and where in it one is.
 
+import type { ClipOptions } from '../clip';
+import { USUAL } from '../clip';
 import type { Take } from '../take';
 import { EMPTY } from '../take';
 import { History } from './history';
@@ -14,8 +16,12 @@ export class TimelineState {
   playing = $state(false);
   recording = $state(false);
   loop = $state(false);
-  /** How far an export is, 0 to 1; null while there is none. */
+  /** How far an export, or the reading of a file, is, 0 to 1; null while there is none. */
   exporting = $state<number | null>(null);
+  /** How a GLB file of it is to be. */
+  options = $state.raw<ClipOptions>(USUAL);
+  /** How well a tracker's file could be read that is on the timeline, in sentences. */
+  report = $state.raw<string[]>([]);
   canUndo = $state(false);
   private readonly history = new History<Take>();
 
@@ -28,6 +34,7 @@ export class TimelineState {
     this.note('another take');
     this.show(take);
     this.time = 0;
+    this.report = [];
   }
 
   /** The same take, changed. @param gesture see History. */
