@@ -10,6 +10,7 @@ from .blend import Blend, Shape, ShapeTable, blend, split_name
 from .clip import Clip, clip_of, record
 from .combination import Combination
 from .conditions import TISSUE_AGES, plain_changes
+from .edit_schema import muscle_edit_schema, tissue_edit_schema
 from .emotion import Emotion
 from .errors import (
     Cancelled,
@@ -223,6 +224,7 @@ __all__ = [
     "letter_of",
     "lexicon",
     "measure_units",
+    "muscle_edit_schema",
     "parse_facs",
     "part_name",
     "path_dependence",
@@ -257,6 +259,7 @@ __all__ = [
     "texture_names",
     "textures_of",
     "ticks",
+    "tissue_edit_schema",
     "tissue_to_glb",
     "track_timeline",
     "unit_basis",

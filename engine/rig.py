@@ -69,6 +69,8 @@ PAPER_FORCE_SHARES: Mapping[str, float] = {
 """The same where 0.42 leaves a landmark of Table 1 outside its human range; by muscle, no side."""
 FORCE_SHARES = (0.5, 2.4)
 """Least and greatest force of a muscle against the head it was fitted on."""
+MOST_OF_A_MUSCLE = 1.0e4
+"""Greatest number that an edit of a muscle may set, either way."""
 EDITABLE = (
     "attachment",
     "insertion",
@@ -719,7 +721,7 @@ def _like(name: str, old: object, value: object) -> object:
         if not isinstance(value, list | tuple) or len(value) != len(old):
             raise InvalidValue(f"{name} is {value!r}; expected {len(old)} entries like {old!r}")
         return tuple(_like(name, o, v) for o, v in zip(old, value, strict=True))
-    _check_range(name, value, -1.0e4, 1.0e4)
+    _check_range(name, value, -MOST_OF_A_MUSCLE, MOST_OF_A_MUSCLE)
     return float(value)  # type: ignore[arg-type]
 
 

@@ -31,6 +31,8 @@ from engine import (
     MOST_LIFE,
     OWNER,
     SPEAKER,
+    muscle_edit_schema,
+    tissue_edit_schema,
     usual_layer,
 )
 
@@ -94,6 +96,12 @@ def _bounded(value: JsonValue) -> JsonValue:
 Changes = Annotated[
     dict[Name, JsonValue], Field(max_length=256), AfterValidator(lambda value: _bounded(value))
 ]
+TissueChanges = Annotated[Changes, WithJsonSchema(tissue_edit_schema())]
+MuscleChanges = Annotated[Changes, WithJsonSchema(muscle_edit_schema())]
+MusclesChanges = Annotated[
+    Changes, WithJsonSchema({"type": "object", "additionalProperties": muscle_edit_schema()})
+]
+"""Changes of muscles by their full names."""
 
 
 class Body(BaseModel):
@@ -396,7 +404,7 @@ class NewRig(Body):
     recipe: Changes | None = Field(
         default=None, examples=[{"age": 60, "skin": "dark"}], description="What the person is like."
     )
-    tissue: Changes | None = Field(
+    tissue: TissueChanges | None = Field(
         default=None,
         examples=[{"region_laxity": {"cheek": 0.5}, "tissue_depth": {"C5_2": 14.0}}],
         description="Tissue constants, factors by region, and thickness maps by point or node.",
@@ -411,7 +419,7 @@ class NewRig(Body):
         examples=[{"corrugator_supercilii": 0.8, "frontalis_medial.L": 1.0}],
         description="Share of its force that each muscle has lost, as by botulinum toxin.",
     )
-    muscles: Changes | None = None
+    muscles: MusclesChanges | None = None
     action_units: Changes | None = None
     emotions: Changes | None = None
     passing: StrictBool = Field(

@@ -135,7 +135,7 @@ class TissueParameters:
             _check(name, getattr(self, name), low, high)
         for name in ("stiffness_low", "stiffness_high"):
             for layer in LAYERS:
-                _check(f"{name}.{layer}", getattr(getattr(self, name), layer), 1.0, 2000.0)
+                _check(f"{name}.{layer}", getattr(getattr(self, name), layer), *STIFFNESS_LIMITS)
         for layer in LAYERS:
             if getattr(self.stiffness_high, layer) < getattr(self.stiffness_low, layer):
                 raise InvalidValue(
@@ -200,6 +200,8 @@ class TissueParameters:
         return asdict(self)
 
 
+STIFFNESS_LIMITS = (1.0, 2000.0)
+"""Allowed range of k_L and k_H of each layer."""
 LIMITS: Mapping[str, tuple[float, float]] = {
     "strain_threshold": (0.0, 1.0),
     "compression_guard": (0.0, 10.0),

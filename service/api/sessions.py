@@ -10,13 +10,14 @@ from fastapi import APIRouter, Query, Response
 from engine import LETS_GO, SPEAKER, UnknownName, face_to_glb
 
 from ..bodies import (
-    Changes,
     Controls,
     EmotionCommand,
+    MuscleChanges,
     NewSession,
     Owner,
     Scale,
     SpeechCommand,
+    TissueChanges,
 )
 from ..commands import controls_keyframe, live_model
 from ..components import Components, Parts
@@ -177,14 +178,16 @@ async def be_silent(
 
 
 @router.patch("/{session_id}/tissue")
-async def edit_tissue(session_id: str, body: Changes, parts: Parts) -> dict[str, Any]:
+async def edit_tissue(session_id: str, body: TissueChanges, parts: Parts) -> dict[str, Any]:
     """Change tissue constants live: the face moves over to the derived rig as it stands."""
     session = await parts.sessions.get(session_id)
     return await _edit(session, {"tissue": body}, parts)
 
 
 @router.patch("/{session_id}/muscles/{muscle}")
-async def edit_muscle(session_id: str, muscle: str, body: Changes, parts: Parts) -> dict[str, Any]:
+async def edit_muscle(
+    session_id: str, muscle: str, body: MuscleChanges, parts: Parts
+) -> dict[str, Any]:
     """Change one muscle live: the face moves over to the derived rig as it stands."""
     session = await parts.sessions.get(session_id)
     try:
