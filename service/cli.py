@@ -18,11 +18,11 @@ import structlog
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TextColumn
 
-from . import dataset_commands, key_commands
+from . import dataset_commands, key_commands, picture_commands
 from .terminal import console as _console
 from .terminal import refuse as _refuse
+from .terminal import words as _words
 from .version import version
 
 app = typer.Typer(
@@ -270,83 +270,8 @@ def clip(
 
 
 app.command()(dataset_commands.dataset)
-
-
-@app.command()
-def sheet(
-    output: Annotated[
-        Path,
-        typer.Option("-o", "--output", help="Picture to write; a folder takes one for each."),
-    ],
-    rig: Annotated[str, typer.Option(help="Rigs to show, comma separated.")] = "standard",
-    people: Annotated[
-        bool, typer.Option("--people", help="Show everyone who comes along.")
-    ] = False,
-    edit: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Show the rigs changed as well: a body of POST /api/rigs, such as"
-            """ '{"palsy": {"side": "left", "grade": "IV"}}'; may be repeated."""
-        ),
-    ] = None,
-    columns: Annotated[int, typer.Option(min=1, max=20, help="Pictures in a row.")] = 6,
-    size: Annotated[int, typer.Option(min=64, max=1024, help="Side of a picture, pixels.")] = 320,
-    view: Annotated[
-        str,
-        typer.Option(
-            help="Views, comma separated: front, three-quarter, profile, left, eye, mouth, ear,"
-            " degrees."
-        ),
-    ] = "three-quarter",
-    only: Annotated[
-        str,
-        typer.Option(help="Names to show, comma separated: AU12,fear,fear@0.4,rest,6C+12D."),
-    ] = "",
-    only_set: Annotated[
-        str, typer.Option("--set", help="Show a set: emotions, intensities, combinations, recipes.")
-    ] = "",
-    whole: Annotated[
-        bool, typer.Option("--whole", help="Show the head, not the face alone.")
-    ] = False,
-) -> None:
-    """Draw every action unit and emotion, as the viewer shows them, on one picture."""
-    from .explaining import did_you_mean
-    from .sheet import Plan, SheetRefused, draw_sheet
-    from .sheet_edits import EditRefused, read_edits
-    from .sheet_sets import SETS
-
-    if only_set and only_set not in SETS:
-        hint = did_you_mean(only_set, list(SETS))
-        _refuse(f"There is no set {only_set!r}{hint or '; there are ' + ', '.join(SETS)}.")
-    try:
-        edits = read_edits(edit or ())
-    except EditRefused as refused:
-        _refuse(str(refused))
-    plan = Plan(
-        rigs=() if people else _words(rig),
-        views=_words(view),
-        only=(*SETS.get(only_set, ()), *_words(only)),
-        size=size,
-        whole=whole,
-        edits=edits,
-    )
-    progress = Progress(TextColumn("{task.description}"), BarColumn(), console=_console)
-    try:
-        with progress:
-            task = progress.add_task("starting", total=1.0)
-            count = draw_sheet(
-                output,
-                plan,
-                columns=columns,
-                show=lambda stage, share: progress.update(task, description=stage, completed=share),
-            )
-    except SheetRefused as refused:
-        _refuse(str(refused))
-    _console.print(f"{count} pictures in {escape(str(output))}", soft_wrap=True)
-
-
-def _words(listed: str) -> tuple[str, ...]:
-    return tuple(word.strip() for word in listed.split(",") if word.strip())
+app.command()(picture_commands.sheet)
+app.command()(picture_commands.screens)
 
 
 @app.command()

@@ -6,13 +6,16 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .app import create_app
 from .browser import chromium
 from .server import running
 from .settings import Settings
 from .stage import NOT_BUILT, Stage
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 _NO_LIMIT = 1000.0
 """Share of a tick that faces may take: nobody watches these live."""
@@ -25,7 +28,16 @@ class NoViewer(RuntimeError):
 
 @contextmanager
 def studio(*, cache_dir: Path | None = None, viewer_dir: Path | None = None) -> Iterator[Stage]:
-    """Open a studio, with a stage in it.
+    """Open a studio, with a stage in it; see `visited_service`."""
+    with visited_service(cache_dir=cache_dir, viewer_dir=viewer_dir) as (browser, url):
+        yield Stage(browser, url)
+
+
+@contextmanager
+def visited_service(
+    *, cache_dir: Path | None = None, viewer_dir: Path | None = None
+) -> Iterator[tuple[Browser, str]]:
+    """Start a service and a browser, and yield the browser and the service's address.
 
     Args:
         cache_dir: Where files that can be made again are kept; the usual folder if None.
@@ -52,4 +64,4 @@ def studio(*, cache_dir: Path | None = None, viewer_dir: Path | None = None) -> 
         if not (settings.viewer_dir / "index.html").is_file():
             raise NoViewer(NOT_BUILT)
         with running(create_app(settings), settings) as url:
-            yield Stage(browser, url)
+            yield browser, url

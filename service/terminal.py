@@ -17,3 +17,8 @@ def refuse(sentence: str) -> NoReturn:
     whole = sentence.removesuffix(".") if sentence.endswith("?.") else sentence
     console.print(escape(whole), style="red", soft_wrap=True)
     raise typer.Exit(REFUSED)
+
+
+def words(listed: str) -> tuple[str, ...]:
+    """Return the words of a list with commas."""
+    return tuple(word.strip() for word in listed.split(",") if word.strip())

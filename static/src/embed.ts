@@ -15,7 +15,7 @@ class RisoriusFace extends HTMLElement {
     style.textContent = `
       :host { display: inline-block; width: 320px; aspect-ratio: 4 / 5; max-width: 100%; }
       :host([hidden]) { display: none; }
-      iframe { display: block; width: 100%; height: 100%; border: 0; background: none; color-scheme: normal; }`;
+      iframe { display: block; width: 100%; height: 100%; border: 0; background: none; color-scheme: light; }`;
     this.attachShadow({ mode: 'open' }).append(style, this.frame);
   }
 

@@ -1,7 +1,15 @@
 // How each kind of surface takes light: skin, eyes, wet mucosa, teeth, hair.
 
 import type { Material, MeshPhysicalMaterialParameters, Texture } from 'three';
-import { AdditiveBlending, DoubleSide, MeshPhysicalMaterial, Vector2 } from 'three';
+import {
+  AdditiveBlending,
+  CustomBlending,
+  DoubleSide,
+  MeshPhysicalMaterial,
+  OneFactor,
+  Vector2,
+  ZeroFactor,
+} from 'three';
 import type { EyeSetting } from './eye-shader';
 import { makeCornea, makeEyeball } from './eye-shader';
 import { makeHair } from './hair-shader';
@@ -148,6 +156,15 @@ function cards(vertexColors: boolean, map: Texture): Material {
     side: DoubleSide,
     alphaToCoverage: true,
     alphaTest: 0.35,
+    // A sample is all card, whatever part of the pixel the card covers; where the page lies behind the
+    // picture, the skin under the card must stay as solid as it was. Skin that fades at the neck is
+    // drawn with what is transparent, so that cards, which come after it, must be too.
+    transparent: true,
+    blending: CustomBlending,
+    blendSrc: OneFactor,
+    blendDst: ZeroFactor,
+    blendSrcAlpha: OneFactor,
+    blendDstAlpha: OneFactor,
   });
   material.onBeforeCompile = (program) => {
     makeHair(program, { cards: true, drawnHeight: { value: 0 } });
