@@ -106,13 +106,23 @@ def fit_shapes(clip: Clip, motion: ClipMotion, packing: Packing, check: Check) -
 
 
 def _fitted(piece: Piece, packing: Packing, check: Check) -> _Fitted:
-    """Return the shapes of a piece, on a grid where they fit on it within the tolerance.
+    """Return the shapes of a piece: by regions where they may be, and are fewer than the frames.
+
+    In a clip of few frames little has gone its own way yet, and five regions would have more shapes
+    than the clip has frames.
+    """
+    if packing.sparse and piece.part is None:
+        own = _fitted_by(regions_of(piece.rest), piece, packing, check)
+        if own.count < len(piece.motion):
+            return own
+    return _fitted_by([np.arange(len(piece.rest))], piece, packing, check)
+
+
+def _fitted_by(areas: list[IntArray], piece: Piece, packing: Packing, check: Check) -> _Fitted:
+    """Return the shapes of areas, on a grid where they fit on it within the tolerance.
 
     Very many shapes may add up what each loses by rounding: those are not rounded.
     """
-    areas = [np.arange(len(piece.rest))]
-    if packing.sparse and piece.part is None:
-        areas = regions_of(piece.rest)
     grid = packing.grid(metres(piece.rest))
     for own in (grid, Grid()):
         # What is left of the tolerance where the places at rest are rounded, too.

@@ -27,6 +27,8 @@ def redness(page: playwright_api.Page) -> float:
 def test_muscles_are_seen_and_glow_as_they_contract(page: playwright_api.Page, url: str) -> None:
     page.set_viewport_size({"width": 1200, "height": 800})
     page.goto(f"{url}/?idle=0&level=low&dpr=0.5")
+    # A first sketch, as software draws it, has other colours.
+    page.wait_for_function("() => window.__viewer?.textured")
     settle(page)
     bare = redness(page)
     page.get_by_role("button", name="Light and stage").click()

@@ -227,7 +227,7 @@ def test_a_link_shows_its_face_and_a_key_opens_the_page(
         playwright_api.expect(page.locator("body")).to_have_class(re.compile("watching"))
         page.goto(f"{url}/?level=low&dpr=0.25")
         page.get_by_label("This service asks for a key.").fill("a-key")
-        page.get_by_role("button", name="Open").click()
+        page.locator("#curtain").get_by_role("button", name="Open").click()
         page.wait_for_function("() => window.__viewer.connected")
         playwright_api.expect(page.locator("#panels")).to_be_visible()
 

@@ -15,6 +15,7 @@ from starlette.testclient import TestClient
 from engine import Frame, Idle, Model, Simulator, Timeline, builtin_rig, ticks
 from service.app import create_app
 from service.bodies import NewClip
+from service.clip_requests import Bounds, played_by
 from service.commanded import commanded_units
 from service.commands import clip_timeline
 from service.embedded import EmbeddedRunner
@@ -209,9 +210,9 @@ def test_a_clip_lives_too_and_the_same_one_the_same_life() -> None:
         assert [each.owner for each in still.keyframes] == ["anyone"]
 
 
-def test_a_clip_that_lives_commands_it(client: TestClient) -> None:
+def test_a_clip_that_lives_commands_it() -> None:
     clip = NewClip.model_validate({"timeline": [], "duration": 5.0, "idle": {"seed": SEED}})
-    timeline, _ = parts_of(client).clips._checked(clip, RIG)
+    timeline = played_by(clip, RIG, Bounds(seconds=5.0, keyframes=1)).timeline
     names, rows = commanded_units(timeline, RIG, [tick / 60.0 for tick in range(300)])
     assert rows[:, names.index("AU45")].max() > 0.5
 
