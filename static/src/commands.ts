@@ -275,6 +275,10 @@ export class Commands {
   private touch(): void {
     this.touchedAt = performance.now();
     this.touched();
+    // A page that is kept busy meanwhile has reports waiting that are older still: it counts from when it is free.
+    setTimeout(() => {
+      this.touchedAt = performance.now();
+    });
   }
 
   private release(layer: Layer): void {
