@@ -12,6 +12,9 @@ from .rig import Rig
 from .timeline import LAYERS, Keyframe
 from .writers import Writers
 
+_DECIMALS = 4
+"""Of what is reported: more would be noise of products and mixtures."""
+
 
 class Mixer:
     """The commands of one face: what each layer holds, and the one vector they make together."""
@@ -132,13 +135,17 @@ class Mixer:
     def _merged_report(self, tick: int) -> dict[str, object]:
         merged, channels = self.at(tick), self._rig.channels
         report: dict[str, object] = {
-            "action_units": self._merged_units(),
+            "action_units": {
+                key: round(value, _DECIMALS) for key, value in self._merged_units().items()
+            },
             "muscles": {
-                name: round(float(value), 4)
+                name: round(float(value), _DECIMALS)
                 for name, value in zip(channels.muscle_names, merged, strict=False)
                 if value != 0.0
             },
         }
         for group, axes in GROUPS.items():
-            report[group] = {axis: float(merged[channels.index(group, axis)]) for axis in axes}
+            report[group] = {
+                axis: round(float(merged[channels.index(group, axis)]), _DECIMALS) for axis in axes
+            }
         return report

@@ -24,6 +24,9 @@ from engine import (
 from .bodies import Units
 from .errors import Unprocessable, refused_by_engine
 
+_DECIMALS = 3
+"""Of an intensity that is a product or a mixture: more would be noise of the arithmetic."""
+
 
 @dataclass(frozen=True)
 class Named:
@@ -105,11 +108,15 @@ def playable(command: Units, rig: Rig) -> Playable:
 
 
 def written(units: Mapping[str, float], scale: str = "linear") -> str:
-    """Return units as a FACS string; a rig's own units, which have no number, are not in it."""
+    """Return what a face plays as a FACS string, to a thousandth.
+
+    A rig's own units, which have no number, are not in it.
+    """
     terms = []
     for key, intensity in units.items():
+        shown = round(intensity, _DECIMALS)
         with suppress(InvalidNotation):
-            terms += [term_of(key, intensity)] if intensity > 0.0 else []
+            terms += [term_of(key, shown)] if shown > 0.0 else []
     return print_facs(terms, scale)
 
 

@@ -6,8 +6,11 @@ import re
 import unicodedata
 
 _JOINTS = re.compile(r"[\s_\-\u2010-\u2015.,!?/]+")
-_INVISIBLE = re.compile("[\ufe0e\ufe0f\U0001f3fb-\U0001f3ff]")
-"""What changes only how an emoji is drawn: presentation, and tones of skin."""
+_INVISIBLE = re.compile(
+    "[\u200b\u2060\ufeff\ufe00-\ufe0f\U000e0100-\U000e01ef\U0001f3fb-\U0001f3ff]"
+)
+"""What changes only how a word or an emoji is drawn: variation selectors of both of Unicode's
+blocks, tones of skin, spaces of no width."""
 _ENDINGS = ("ness", "ment", "ful", "ing", "est", "ed", "er", "ly", "es", "s")
 _LEAST = 3
 """Fewest letters of a stem."""

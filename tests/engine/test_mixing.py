@@ -97,6 +97,18 @@ def test_the_merged_report_weighs_layers_and_tells_sides(standard_rig):
     assert merged["action_units"] == pytest.approx({"AU12": 0.6, "L1": 0.2, "R1": 1.0})
 
 
+def test_the_merged_report_has_no_noise_of_arithmetic(standard_rig):
+    mixer = Mixer(standard_rig)
+    mixer.apply(Keyframe(action_units={"AU20": 0.1}, layer="emotion"), 0)
+    mixer.apply(Keyframe(action_units={"AU20": 0.8}, layer="speech", weight=0.3), 0)
+    mixer.apply(Keyframe(head={"yaw": 12.3}, layer="speech", weight=0.3), 0)
+    assert 0.1 + (0.8 - 0.1) * 0.3 != 0.31
+    merged = mixer.report(1)["merged"]
+    assert isinstance(merged, dict)
+    assert merged["action_units"] == {"AU20": 0.31}
+    assert len(str(merged["head"]["yaw"])) <= len("12.3456")
+
+
 def test_a_ramp_asked_late_has_arrived(standard_rig):
     mixer = Mixer(standard_rig)
     mixer.apply(Keyframe(action_units={"AU12": 1.0}, fade=1.0), 0)

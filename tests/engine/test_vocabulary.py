@@ -135,8 +135,21 @@ def test_other_forms_of_a_word_name_the_same_face(word, recipe):
     assert [part.recipe for part in resolve_label(word).parts] == [recipe]
 
 
-def test_an_emoji_is_the_same_however_it_is_drawn():
-    assert resolve_label("☹️").units == resolve_label("☹").units
+SELECTORS = [*range(0xFE00, 0xFE10), 0xE0100, 0xE01EF]
+
+
+@pytest.mark.parametrize("selector", SELECTORS, ids=hex)
+def test_a_word_is_the_same_however_it_is_drawn(selector):
+    for word in ("☹", "☺", "🙃", "joy"):
+        drawn = resolve_label(word + chr(selector))
+        assert (drawn.label, drawn.units) == (word, resolve_label(word).units)
+
+
+def test_an_upside_down_smile_is_a_smile_that_one_side_does_not_mean():
+    smile, ironic = resolve_label("🙂").units, resolve_label("🙃")
+    assert ironic.vocabulary == "emoji"
+    assert smile.items() < ironic.units.items()
+    assert by_side(ironic.units)["L14"] > 0.0
 
 
 @pytest.mark.parametrize("word", ["joyless", "unafraid", "xyzzy", "", "   ", "🚗", "e"])

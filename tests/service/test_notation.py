@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 from engine import facs_codes, parse_facs
+from service.facs import written
 
 UNITS = st.dictionaries(
     st.sampled_from([f"{side}{n}" for n in (1, 4, 12, 22, 28, 43, 51) for side in ("", "L", "R")]),
@@ -82,6 +83,13 @@ def test_units_that_are_written_read_back_the_same(client, units, scale) -> None
     assert (again["canonical"], again["units"]) == (first["canonical"], first["units"])
     read_back = {unit["side"] + unit["name"][2:]: unit["intensity"] for unit in again["units"]}
     assert read_back == units
+
+
+def test_what_a_face_plays_is_written_to_a_thousandth() -> None:
+    """Intensities of mixtures are sums and products; their noise is nobody's command."""
+    units = {"AU20": 0.29000000000000004, "AU12": 0.6000000000000001, "R4": 1 / 3, "AU1": 1e-4}
+    assert written(units) == "R4:0.333+12C+20:0.29"
+    assert written({"AU1": 1e-4}) == "0"
 
 
 def test_the_neutral_face_is_code_0(client: TestClient) -> None:

@@ -9,6 +9,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 from collections.abc import Iterator
+from itertools import islice
 
 import pytest
 from conftest import settings_in
@@ -16,7 +17,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from service.app import create_app
-from service.protocol import SUBPROTOCOL, SurfaceFrame, decode_frame
+from service.protocol import SUBPROTOCOL, SurfaceFrame, decode_frame, encode_frame
 from service.server import listen, running
 
 
@@ -117,6 +118,33 @@ def test_a_viewer_that_stops_reading_delays_nobody(url: str, session: str) -> No
         assert time.monotonic() - started < 60
         text = urllib.request.urlopen(f"{url}/metrics", timeout=30).read().decode()
         assert "risorius_viewers 2.0" in text
+
+
+def test_a_viewer_whose_line_broke_is_whole_again_within_a_second_of_the_face(
+    url: str, session: str
+) -> None:
+    """It says nothing but hello; who never left sees the very same, bit for bit."""
+    place = f"{url}/api/sessions/{session}/controls"
+    short = {"close_timeout": 0.1}  # Frames that nobody reads any more are not waited for.
+    with stream(url, session, **short) as stayed:
+        with stream(url, session, **short) as lost:
+            call(place, "PATCH", {"action_units": {"AU12": 0.7, "L4": 0.5}, "fade": 6.0})
+            last = next(frame for frame in frames(lost) if frame.steps.any())
+            # Gone as a cable that is pulled: no closing words.
+            lost.socket.shutdown(socket.SHUT_RDWR)
+        call(place, "PATCH", {"head": {"yaw": 9.0}, "fade": 6.0})
+        with stream(url, session, **short) as back:
+            hello = json.loads(back.recv(timeout=30))
+            first = next(frames(back))
+            assert hello["type"] == "hello"
+            assert last.tick < first.tick <= hello["tick"] + 60
+            held = hello["state"]["layers"]["puppet"]
+            assert held["action_units"] == {"AU12": 0.7, "L4": 0.5}
+            assert held["head"] == {"yaw": 9.0}
+            seen = {frame.tick: frame for frame in [first, *islice(frames(back), 20)]}
+        common = next(frame for frame in frames(stayed) if frame.tick in seen)
+        assert encode_frame(common) == encode_frame(seen[common.tick])
+        assert common.steps.any()
 
 
 def test_a_body_that_is_too_long_is_refused(url: str) -> None:
