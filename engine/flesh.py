@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from .arrays import FloatArray, IntArray
 from .cover import showing
 from .quality import asymmetry, folded_triangles, roughness, visible_triangles
-from .rig import Rig
+from .rig import Model, Rig
 from .simulator import Simulator
 from .timeline import TICKS_PER_SECOND, Keyframe
 from .tissue.layers import Sheet, prism_volumes, sheet_of
@@ -67,9 +67,22 @@ def random_mixes(rig: Rig, count: int, seed: int) -> list[Keyframe]:
     return mixes
 
 
-def examine(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 1.0) -> list[Flesh]:
-    """Return the figures of each expression; all faces run side by side."""
-    simulator = Simulator(rig)
+def examine(
+    rig: Rig,
+    keyframes: Sequence[Keyframe],
+    *,
+    seconds: float = 1.0,
+    model: Model | None = None,
+) -> list[Flesh]:
+    """Return the figures of each expression; all faces run side by side.
+
+    Args:
+        rig: Whose faces.
+        keyframes: One a face, applied to the face at rest.
+        seconds: After which they are looked at.
+        model: Forms of the physics; the rig's own if None.
+    """
+    simulator = Simulator(rig, model=model)
     names = [str(index) for index in range(len(keyframes))]
     for name, keyframe in zip(names, keyframes, strict=True):
         simulator.add(name)
@@ -111,15 +124,21 @@ def examine(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 1.0) ->
 
 
 def path_dependence(
-    rig: Rig, keyframes: Sequence[Keyframe], *, histories: int = 10, seed: int = 1
+    rig: Rig,
+    keyframes: Sequence[Keyframe],
+    *,
+    histories: int = 10,
+    seed: int = 1,
+    model: Model | None = None,
 ) -> list[float]:
     """Return how far each expression's rest depends on what went before, mm.
 
     Each is taken up once from rest and once from each of `histories` random mixes; the figure is
-    the greatest distance of any point from where the face that came from rest has it.
+    the greatest distance of any point from where the face that came from rest has it. `model` is as
+    for `examine`.
     """
     pasts = [None, *random_mixes(rig, histories, seed)]
-    simulator = Simulator(rig)
+    simulator = Simulator(rig, model=model)
     for index in range(len(keyframes)):
         for number, past in enumerate(pasts):
             name = f"{index} {number}"
@@ -143,13 +162,20 @@ def path_dependence(
     return result
 
 
-def jolts(rig: Rig, keyframes: Sequence[Keyframe], *, seconds: float = 2.0) -> list[float]:
+def jolts(
+    rig: Rig,
+    keyframes: Sequence[Keyframe],
+    *,
+    seconds: float = 2.0,
+    model: Model | None = None,
+) -> list[float]:
     """Return how abruptly each expression moves while it is taken up and let go slowly, mm a tick.
 
     The figure is the greatest change of any visible point's step from one tick to the next:
-    contact that sets in or lets go with a pop shows there, a smooth motion does not.
+    contact that sets in or lets go with a pop shows there, a smooth motion does not. `model` is as
+    for `examine`.
     """
-    simulator = Simulator(rig)
+    simulator = Simulator(rig, model=model)
     names = [str(index) for index in range(len(keyframes))]
     moves = [
         [replace(keyframe, fade=seconds) for keyframe in keyframes],

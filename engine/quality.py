@@ -29,6 +29,8 @@ HIDDEN_REGIONS = (
 """Skin that is folded at rest or cannot be seen; left out of the count of folds."""
 SETTLED = 0.05
 """A landmark has settled when it stays within this share of its way."""
+UNMOVED_MM = 1e-3
+"""A face of which no point has gone farther has not moved: numbers of 32 bits round to less."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,8 @@ def roughness(rig: Rig, displacements: FloatArray) -> float:
     u = displacements[: rig.head.sheet_count]
     weight = sheet.node_area * ~rig.head.fixed
     bend = sheet.neighbor_mean @ u - u
+    if np.abs(u).max() < UNMOVED_MM:
+        return 0.0
     size = float((weight * (u**2).sum(1)).sum())
     return float(np.sqrt((weight * (bend**2).sum(1)).sum() / size)) if size > 0.0 else 0.0
 
@@ -88,7 +92,7 @@ def asymmetry(rig: Rig, displacements: FloatArray) -> float:
 
 
 def judge(rig: Rig, keyframes: Sequence[Keyframe]) -> list[Quality]:
-    """Return the figures of each expression; all faces run side by side."""
+    """Return the figures of each expression; all faces run side by side, as live ones do."""
     straight = _histories(rig, keyframes)
     overshot = _ends(rig, keyframes, overshoot=1.6)
     slow = _ends(rig, keyframes, overshoot=None)
@@ -129,7 +133,7 @@ def _histories(rig: Rig, keyframes: Sequence[Keyframe]) -> list[tuple[FloatArray
 
 def _ends(rig: Rig, keyframes: Sequence[Keyframe], *, overshoot: float | None) -> list[FloatArray]:
     """Return where each face rests after an overshoot, or after a slow ramp of a second."""
-    simulator = Simulator(rig)
+    simulator = Simulator(rig, model=rig.model.live)
     for index, keyframe in enumerate(keyframes):
         simulator.add(str(index))
         first = _scaled(rig, keyframe, overshoot or 1.0)
@@ -173,7 +177,7 @@ def _settling(away: BoolArray) -> float:
 def _settling_share(history: FloatArray) -> float:
     way = np.linalg.norm(history[-1], axis=1)
     farthest = int(way.argmax())
-    if way[farthest] == 0.0:
+    if way[farthest] < UNMOVED_MM:
         return 0.0
     gap = np.linalg.norm(history[:, farthest] - history[-1, farthest], axis=1)
     return _settling(gap > SETTLED * way[farthest])

@@ -120,6 +120,15 @@ class Model:
         """Whether the kernel for many faces at once has these springs and forces."""
         return self.forces == "rest" and self.springs == "continuous"
 
+    @property
+    def live(self) -> Model:
+        """These forms as live faces run them, where the kernel for many faces has them.
+
+        It draws what the paper's integrator does (`tests/engine/test_accuracy.py`), in a twentieth
+        of the time. The paper's own springs and forces keep the paper's integrator.
+        """
+        return replace(self, integrator="verlet") if self.runs_together else self
+
     @classmethod
     def for_rig(cls, rig: Rig, **choices: str) -> Model:
         """Return the rig's own model with `choices` in place.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, replace
+from dataclasses import astuple
 
 import numpy as np
 
@@ -43,14 +43,14 @@ def settled(
         rig: Whose faces.
         keyframes: One a face, applied to the face at rest.
         seconds: How long the faces are given; they are stepped together.
-        model: Forms of the physics; the rig's own if None.
+        model: Forms of the physics; the rig's own, as live faces run them, if None.
         threads: Faces stepped at a time; None takes one a core.
         still_mm: A face has arrived, and is stepped no more, once no point of it moves as far in
             a tick; at 0 every face is given all of the time.
         progress: Told the share of the work done, 0 to 1; may raise to stop it.
         watch: Shown every face after each tick.
     """
-    simulator = Simulator(rig, model=model, threads=threads)
+    simulator = Simulator(rig, model=model or rig.model.live, threads=threads)
     names = [str(number) for number in range(len(keyframes))]
     for name, keyframe in zip(names, keyframes, strict=True):
         simulator.add(name)
@@ -86,7 +86,7 @@ def settled_units(rig: Rig, *, progress: Progress | None = None) -> list[Frame]:
     Kept on disk under the rig's id, for it takes seconds and many ask for it.
     """
     keyframes = [Keyframe(action_units={name: 1.0}, fade=UNIT_FADE) for name in rig.action_units]
-    return _kept("units", rig, keyframes, None, progress)
+    return _kept("units", rig, keyframes, progress)
 
 
 def settled_arkit(rig: Rig, *, progress: Progress | None = None) -> list[Frame]:
@@ -94,9 +94,6 @@ def settled_arkit(rig: Rig, *, progress: Progress | None = None) -> list[Frame]:
 
     Kept on disk as the units are. A shape of which the rig does nothing is a face at rest.
     """
-    model = Model.for_rig(rig)
-    if model.runs_together:  # As live faces are stepped, in a tenth of the time.
-        model = replace(model, integrator="verlet")
     keyframes = []
     for name in arkit_table().shapes:
         blend = arkit_blend({name: 1.0})
@@ -111,21 +108,20 @@ def settled_arkit(rig: Rig, *, progress: Progress | None = None) -> list[Frame]:
                 fade=UNIT_FADE,
             )
         )
-    return _kept("arkit", rig, keyframes, model, progress)
+    return _kept("arkit", rig, keyframes, progress)
 
 
 def _kept(
     kind: str,
     rig: Rig,
     keyframes: Sequence[Keyframe],
-    model: Model | None,
     progress: Progress | None,
 ) -> list[Frame]:
     """Return where keyframes lead to, settled once and kept on disk."""
     key = content_key(rig.id, keyframes, ENGINE_HASH)
 
     def build() -> Arrays:
-        return _to_arrays(settled(rig, keyframes, model=model, progress=progress))
+        return _to_arrays(settled(rig, keyframes, progress=progress))
 
     return _from_arrays(cached_arrays(kind, key, build))
 

@@ -117,15 +117,9 @@ def model_of(choice: ModelChoice, rig: Rig) -> Model:
 
 
 def live_model(choice: ModelChoice, rig: Rig) -> Model:
-    """Return the model of a session or a clip: without a choice, the one for many faces at once.
-
-    It draws what the paper's does (`tests/engine/test_accuracy.py`); a rig with the paper's own
-    forms of springs and forces keeps the paper's integrator too.
-    """
+    """Return the model of a session or a clip: without a choice, the one of live faces."""
     model = model_of(choice, rig)
-    if "integrator" in choice.model_fields_set or not model.runs_together:
-        return model
-    return replace(model, integrator="verlet")
+    return model if "integrator" in choice.model_fields_set else model.live
 
 
 def how_told(clip: ClipForm) -> dict[str, Any]:

@@ -75,12 +75,12 @@ def unit_basis(
 
     Args:
         rig: Whose units.
-        model: Forms of the physics; the rig's own if None.
+        model: Forms of the physics; the rig's own, as live faces run them, if None.
         threads: Faces stepped at a time; None takes one a core.
         progress: Told the share of the work done, 0 to 1; may raise to stop it.
     """
-    names = _moving_tissue(rig)
-    key = content_key(rig.id, model or rig.model, STEPS, SETTLE_SECONDS, ARRIVED_MM, ENGINE_HASH)
+    names, model = _moving_tissue(rig), model or rig.model.live
+    key = content_key(rig.id, model, STEPS, SETTLE_SECONDS, ARRIVED_MM, ENGINE_HASH)
     arrays = cached_arrays("unit-fields", key, lambda: _settled(rig, model, threads, progress))
     fields, left, right = (arrays[name].astype(np.float64) for name in ("fields", "left", "right"))
     moving = np.linalg.norm(fields[-1], axis=2).max(axis=1) > STILL_MM
@@ -89,12 +89,10 @@ def unit_basis(
     return UnitBasis(units, fields[:, moving], left[:, moving], right[:, moving], one_sided)
 
 
-def _settled(
-    rig: Rig, model: Model | None, threads: int | None, progress: Progress | None
-) -> Arrays:
+def _settled(rig: Rig, model: Model, threads: int | None, progress: Progress | None) -> Arrays:
     """Return each unit's field at each step, and of its sides, settled side by side."""
     names = _moving_tissue(rig)
-    mirror = _mirror(compile_rig(rig, model or rig.model))
+    mirror = _mirror(compile_rig(rig, model))
     sided = [name for name in names if _has_sides(rig, name)]
     sides = "L" if mirror is not None else "LR"
     faces = [(name, step) for step in STEPS for name in names]

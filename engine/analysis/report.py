@@ -143,6 +143,7 @@ def analyze_facs(
         UnknownName: For a unit the rig does not have, or a scale that there is not.
     """
     units = {term.key: term.intensity for term in parse_facs(facs, scale)}
+    model = model or rig.model.live
     simulator = Simulator(rig, model=model)
     simulator.add("face")
     simulator.apply("face", Keyframe(action_units=units, fade=UNIT_FADE))

@@ -159,7 +159,7 @@ def invert(
         regularization: Misfit of one landmark, mm, that one muscle's full activation is worth;
             `REGULARIZATION_MM` over the root of the number of targets if None.
         iterations: Most Gauss-Newton steps.
-        model: Forms of the physics; the rig's own if None.
+        model: Forms of the physics; the rig's own, as live faces run them, if None.
         threads: Faces stepped at a time; None takes one a core.
         progress: Told the share of the work done, 0 to 1; may raise to stop it.
 
@@ -204,12 +204,12 @@ def search_for(
         rig: Whose face.
         question: From `question_of`.
         response: From `response_of`, of the same rig and model.
-        model: Forms of the physics; the rig's own if None.
+        model: Forms of the physics; the rig's own, as live faces run them, if None.
         threads: Faces stepped at a time; None takes one a core.
         progress: Told the share of the search done, 0 to 1; may raise to stop it.
     """
     slow = progress or _tell_nobody
-    simulator = Simulator(rig, model=model, threads=threads)
+    simulator = Simulator(rig, model=model or rig.model.live, threads=threads)
     search = Search(question.goal, question.controls, response, question.regularization, simulator)
     for step in range(question.iterations):
         slow(step / question.iterations)

@@ -45,11 +45,12 @@ def response_of(
 
     Args:
         rig: Whose.
-        model: Forms of the physics; the rig's own if None.
+        model: Forms of the physics; the rig's own, as live faces run them, if None.
         threads: Faces stepped at a time; None takes one a core.
         progress: Told the share of the work done, 0 to 1; may raise to stop it.
     """
-    key = content_key(rig.id, model or rig.model, RESPONSE_STEP, RESPONSE_TICKS, ENGINE_HASH)
+    model = model or rig.model.live
+    key = content_key(rig.id, model, RESPONSE_STEP, RESPONSE_TICKS, ENGINE_HASH)
 
     def build() -> Arrays:
         commands = [Keyframe(muscles={name: RESPONSE_STEP}) for name in rig.muscle_names]
