@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -95,26 +95,45 @@ def record(
         raise InvalidValue(f"fps is {fps!r}; expected a whole number from 1 to {MAX_FPS}")
     player = _Player(rig, timeline, model)
     count = round(timeline.duration * fps) + 1
-    frames = []
-    for index in range(count):
-        if cancelled is not None and cancelled():
-            raise Cancelled(f"the recording was stopped at frame {index} of {count}")
-        frames.append(player.advance(nearest_tick(index, fps)))
-        if progress is not None:
-            progress((index + 1) / count)
-    played = clip_of(rig, fps, frames)
+
+    def frames() -> Iterator[Frame]:
+        for index in range(count):
+            if cancelled is not None and cancelled():
+                raise Cancelled(f"the recording was stopped at frame {index} of {count}")
+            yield player.advance(nearest_tick(index, fps))
+            if progress is not None:
+                progress((index + 1) / count)
+
+    played = _taken(rig, fps, frames(), count)
     return replace(played, timeline=timeline, model=player.model)
 
 
 def clip_of(rig: Rig, fps: int, frames: Sequence[Frame]) -> Clip:
-    """Return `frames`, taken `fps` a second, as a clip."""
-    return Clip(
-        rig=rig,
-        fps=fps,
-        displacements=np.stack([frame.displacements for frame in frames]).astype(np.float32),
-        poses=tuple(frame.pose for frame in frames),
-        activations=np.stack([frame.activations for frame in frames]).astype(np.float32),
-    )
+    """Return `frames`, taken `fps` a second, as a clip.
+
+    Raises:
+        InvalidValue: There are none.
+    """
+    return _taken(rig, fps, frames, len(frames))
+
+
+def _taken(rig: Rig, fps: int, frames: Iterable[Frame], count: int) -> Clip:
+    """Return the clip of `count` frames, each copied as it comes.
+
+    A frame of a fast face is a view of its bank, sixteen faces wide: kept, it would keep them all.
+    """
+    poses = []
+    displacements = activations = np.empty((0, 0, 3), np.float32)
+    for index, frame in enumerate(frames):
+        if index == 0:
+            displacements = np.empty((count, *frame.displacements.shape), np.float32)
+            activations = np.empty((count, *frame.activations.shape), np.float32)
+        displacements[index] = frame.displacements
+        activations[index] = frame.activations
+        poses.append(frame.pose)
+    if not poses:
+        raise InvalidValue("there are 0 frames; a clip has at least one")
+    return Clip(rig, fps, displacements, tuple(poses), activations)
 
 
 def nearest_tick(index: int, fps: int) -> int:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import weakref
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from recorded import FPS, TIMELINE, live_frames, standard_clip
 
 import engine.clip
 import engine.settling
-from engine.clip import Cancelled, nearest_tick, record
+from engine.clip import Cancelled, clip_of, nearest_tick, record
 from engine.errors import Diverged, InvalidValue, UnknownName
 from engine.frame import Frame, Pose
-from engine.rig import builtin_rig
+from engine.rig import Model, builtin_rig
 from engine.settling import settled, settled_units
 from engine.simulator import Simulator
 from engine.timeline import Keyframe, Timeline
@@ -68,6 +71,32 @@ def test_progress_ends_at_one_and_cancelling_stops() -> None:
     shares.clear()
     with pytest.raises(Cancelled, match="frame 2 of 5"):
         record(rig, short, fps=20, progress=shares.append, cancelled=lambda: len(shares) == 2)
+
+
+def test_frames_are_kept_without_the_bank_that_they_are_seen_in(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = builtin_rig("standard")
+    shown, alive = [], []
+    frame_of = Simulator.frame
+
+    def watched(self: Simulator, face: str) -> Frame:
+        frame = frame_of(self, face)
+        seen = frame.displacements
+        shown.append(weakref.ref(seen if seen.base is None else seen.base))
+        alive.append(sum(each() is not None for each in shown))
+        return frame
+
+    monkeypatch.setattr(Simulator, "frame", watched)
+    short = Timeline((Keyframe(action_units={"AU12": 1.0}),), duration=0.5)
+    clip = record(rig, short, fps=30, model=replace(Model.for_rig(rig), integrator="verlet"))
+    assert len(alive) == len(clip) == 16
+    assert max(alive) <= 2, "the last and this one"
+
+
+def test_a_clip_has_a_frame() -> None:
+    with pytest.raises(InvalidValue, match="0 frames"):
+        clip_of(builtin_rig("standard"), 30, [])
 
 
 def test_divergence_is_not_passed_on_as_a_clip(monkeypatch: pytest.MonkeyPatch) -> None:
