@@ -9,8 +9,9 @@ import numpy as np
 
 from ..arrays import Float32Array, IntArray
 from ..clip import Clip
+from .accessors import metres
 from .basis import DROPPED, LEAST_DROPPED, MotionBasis, fit_basis
-from .builder import Channel, GlbBuilder, metres
+from .builder import Channel, GlbBuilder
 from .drawn import DrawnFace
 from .error import Check, Motion
 from .form import ROUNDING, Fit, promised

@@ -13,12 +13,14 @@ from ..clip import Clip
 from ..errors import Cancelled, InvalidValue, UnknownName
 from ..performance import Origin, Performance
 from ..settling import Progress
+from .accessors import metres
 from .arkit_form import fit_arkit
 from .basis_form import fit_shapes
-from .builder import Channel, GlbBuilder, Textures, metres
+from .builder import Channel, GlbBuilder
 from .drawn import DrawnFace
 from .exact_form import every_frame
 from .form import Fit, Form
+from .library import Textures
 from .lighter import lighter
 from .motion import motion_of
 from .packing import Packing

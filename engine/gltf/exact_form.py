@@ -8,7 +8,8 @@ import numpy as np
 
 from ..clip import Clip
 from ..errors import InvalidValue
-from .builder import Channel, GlbBuilder, metres
+from .accessors import metres
+from .builder import Channel, GlbBuilder
 from .drawn import DrawnFace
 from .error import Check
 from .form import Fit, promised

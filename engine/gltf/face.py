@@ -7,8 +7,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..frame import Frame
 from ..rig import Rig
-from .builder import Array, GlbBuilder, Textures, metres
+from .accessors import metres
+from .builder import GlbBuilder
 from .drawn import DrawnFace, roots_of, turn_with, unit_normals
+from .library import Array, Textures
 from .materials import look_name
 from .pose import RigidMotion, motions
 from .scene import file_extras, part_attributes, rigid_parts, skin_attributes

@@ -12,8 +12,10 @@ from ..frame import Frame
 from ..head.head import Part
 from ..rig import Rig
 from ..settling import settled_arkit, settled_units
-from .builder import GlbBuilder, Textures, metres
+from .accessors import metres
+from .builder import GlbBuilder
 from .drawn import DrawnFace
+from .library import Textures
 from .materials import look_name
 from .pose import RigidMotion, motions
 from .scene import (

@@ -21,8 +21,10 @@ from ..arrays import FloatArray
 from ..head.head import Head, Part
 from ..head.parts.tongue import FULL_THRUST
 from ..jaw import JawHinge
-from .builder import Array, GlbBuilder, metres
+from .accessors import metres
+from .builder import GlbBuilder
 from .drawn import unit_normals
+from .library import Array
 from .materials import look_name
 from .targets import add_targets
 from .tongue import TARGET_NAME, TONGUE, out_target

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import FloatArray, IntArray
-from .builder import GlbBuilder, metres
+from .accessors import metres
+from .builder import GlbBuilder
 from .drawn import DrawnFace
 from .materials import look_name
 from .motion import Piece

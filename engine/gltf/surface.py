@@ -14,7 +14,8 @@ from ..head.head import BULGE_HEIGHT, BULGE_POWER, BULGE_RADIUS, LID_GAP, Head
 from ..head.wrinkles import wrinkles_of
 from ..rig import Rig
 from ..textures import texture_names
-from .builder import GlbBuilder, compact_indices, metres
+from .accessors import compact_indices, metres
+from .builder import GlbBuilder
 from .drawn import DrawnFace, SkinNormals, roots_of
 from .materials import look_name
 from .scene import (

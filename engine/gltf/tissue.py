@@ -12,7 +12,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..rig import Rig
 from ..tissue import TissueModel, assemble
-from .builder import GlbBuilder, metres
+from .accessors import metres
+from .builder import GlbBuilder
 from .scene import file_extras
 
 SHEETS = ("epidermis", "dermis", "hypodermis", "bone")

@@ -9,7 +9,7 @@ from ..frame import Pose
 from ..head.geometry import vertex_normals
 from ..head.head import Part
 from ..head.parts.tongue import FULL_THRUST, tongue_out
-from .builder import metres
+from .accessors import metres
 from .targets import Target
 
 TONGUE = "tongue"
