@@ -1,6 +1,6 @@
 // What the sliders and buttons say to the face, as commands of one layer.
 
-import type { Layer, Numbers } from './protocol';
+import type { Held, Layer, Numbers } from './protocol';
 import {
   controlsCommand,
   emotionCommand,
@@ -14,9 +14,10 @@ import type { Group } from './state/actions';
 import type { Feeling } from './feelings';
 import { dominanceAt } from './feelings';
 import { History } from './state/history';
-import type { Cue, Held } from './take';
+import type { Cue, Held as Played } from './take';
 import type { ViewerState } from './state/viewer.svelte';
 import { Throttle } from './throttle';
+import { Unheard } from './unheard';
 
 /** Each action unit of an emotion takes the time that it takes on living faces. */
 const OWN_TIME = null;
@@ -40,6 +41,7 @@ export class Commands {
   /** The newest point among feelings, until the next frame says it. */
   private readonly felt: Throttle;
   private readonly history = new History<Snapshot>();
+  private readonly unheard = new Unheard();
   private touchedAt = -Infinity;
 
   /**
@@ -55,6 +57,7 @@ export class Commands {
   ) {
     this.throttle = new Throttle((groups) => {
       this.touch();
+      this.unheard.say(groups);
       this.send(controlsCommand(groups));
     }, schedule);
     this.felt = new Throttle(({ feeling }) => {
@@ -63,9 +66,10 @@ export class Commands {
     }, schedule);
   }
 
-  /** Whether what the service reports may move the controls. */
-  get handsOff(): boolean {
-    return performance.now() - this.touchedAt >= HANDS_OFF_MS;
+  /** Whether a report of what this layer holds may move the controls: no hand is on them, and it has heard them all. */
+  mayFollow(held: Held): boolean {
+    const handsOff = performance.now() - this.touchedAt >= HANDS_OFF_MS;
+    return handsOff && !this.throttle.waiting && !this.felt.waiting && this.unheard.isIn(held);
   }
 
   set(group: Group, name: string, value: number): void {
@@ -81,7 +85,7 @@ export class Commands {
     const { sliders } = this.viewer;
     if (group === 'action_units') this.settleSides(name);
     Reflect.deleteProperty(sliders[group], name);
-    this.throttle.clear();
+    this.leaveWaiting();
     this.send(replaceCommand({ layer: 'puppet', fade: RELEASE_FADE_SECONDS, ...sliders.all() }));
   }
 
@@ -112,7 +116,7 @@ export class Commands {
     this.note('FACS');
     this.touch();
     const { sliders } = this.viewer;
-    this.throttle.clear();
+    this.leaveWaiting();
     if (this.viewer.emotion !== '' || this.viewer.feeling !== null) this.endEmotion();
     sliders.action_units = { ...units };
     this.send(replaceCommand({ layer: 'puppet', fade: FACS_FADE_SECONDS, ...sliders.all() }));
@@ -121,7 +125,7 @@ export class Commands {
   /** Have the face itself read a FACS string and play it in place of what plays. */
   playText(facs: string): void {
     this.note('FACS');
-    this.throttle.clear();
+    this.leaveWaiting();
     if (this.viewer.emotion !== '' || this.viewer.feeling !== null) this.endEmotion();
     const { muscles, jaw, gaze, head, tongue } = this.viewer.sliders.all();
     const rest = { muscles, jaw, gaze, head, tongue };
@@ -129,7 +133,7 @@ export class Commands {
   }
 
   /** What the controls hold, and what plays as an emotion. */
-  held(): Held {
+  held(): Played {
     const { controls, emotion, intensity, feeling } = this.snapshot();
     if (emotion !== '') return { controls, plays: { label: emotion, intensity } };
     if (feeling === null) return { controls, plays: null };
@@ -139,8 +143,10 @@ export class Commands {
 
   /** Go through a performance: nothing that is done here is undone later, and nothing is told. */
   perform(pose: Partial<Record<Group, Numbers>>, fade: number): void {
+    // What a hand has just moved is said before, lest it stand here and not on the face.
+    this.throttle.sendNow();
+    this.unheard.forget();
     this.touch();
-    this.throttle.clear();
     for (const [group, values] of Object.entries(pose) as [Group, Numbers][]) {
       for (const [name, value] of Object.entries(values)) {
         if (value === 0) Reflect.deleteProperty(this.viewer.sliders[group], name);
@@ -193,7 +199,7 @@ export class Commands {
 
   /** Put the controls back without a word to the face, for one that begins anew. */
   forget(): void {
-    this.throttle.clear();
+    this.leaveWaiting();
     this.felt.clear();
     this.viewer.sliders.take({});
     this.viewer.emotion = '';
@@ -206,6 +212,12 @@ export class Commands {
     return () => {
       this.restore(held);
     };
+  }
+
+  /** All that is held is said as a whole: what was not sent, or not heard, does not matter any more. */
+  private leaveWaiting(): void {
+    this.throttle.clear();
+    this.unheard.forget();
   }
 
   private note(gesture: string): void {
@@ -232,7 +244,7 @@ export class Commands {
   /** Have the face do what it did when `held` was taken. */
   private restore({ controls, emotion, intensity, feeling }: Snapshot): void {
     this.touch();
-    this.throttle.clear();
+    this.leaveWaiting();
     this.felt.clear();
     const { viewer } = this;
     const playing = viewer.emotion !== '' || viewer.feeling !== null;

@@ -21,10 +21,20 @@ export class Throttle {
     this.scheduled = true;
     this.schedule(() => {
       this.scheduled = false;
-      const groups = this.pending;
-      this.pending = {};
-      if (Object.keys(groups).length > 0) this.flush(groups);
+      this.sendNow();
     });
+  }
+
+  /** Whether something was gathered that is not sent yet. */
+  get waiting(): boolean {
+    return Object.keys(this.pending).length > 0;
+  }
+
+  /** Send what was gathered without waiting for the frame. */
+  sendNow(): void {
+    const groups = this.pending;
+    this.pending = {};
+    if (Object.keys(groups).length > 0) this.flush(groups);
   }
 
   /** Forget what has not been sent. */

@@ -1,6 +1,6 @@
 // What goes over the wire when controls are moved, and in which order edits are sent.
 
-import { beforeEach, describe, expect, it, vi } from 'vitest';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Commands } from '../src/commands';
 import { Edits } from '../src/edits';
 import { ViewerState } from '../src/state/viewer.svelte';
@@ -46,6 +46,57 @@ describe('Commands', () => {
     expect(touched).toHaveBeenCalledTimes(1);
     drawFrame();
     expect(touched).toHaveBeenCalledTimes(2);
+  });
+
+  describe('that a report came before', () => {
+    const late = (ms: number): void => {
+      vi.advanceTimersByTime(ms);
+    };
+
+    beforeEach(() => {
+      vi.useFakeTimers();
+    });
+
+    afterEach(() => {
+      vi.useRealTimers();
+    });
+
+    it('are kept by a page that draws slowly', () => {
+      commands.set('action_units', 'AU12', 0.9);
+      drawFrame();
+      commands.set('action_units', 'AU2', 0.2);
+      late(1500);
+      expect(commands.mayFollow({ action_units: { AU12: 0.9 } })).toBe(false);
+    });
+
+    it('are kept beside a service that answers slowly, which is believed in the end', () => {
+      commands.set('action_units', 'AU12', 0.9);
+      commands.set('action_units', 'AU2', 0.2);
+      drawFrame();
+      late(1500);
+      expect(commands.mayFollow({ action_units: { AU12: 0.9 } })).toBe(false);
+      expect(commands.mayFollow({ action_units: { AU12: 0.9, AU2: 0.5 } })).toBe(false);
+      late(2000);
+      expect(commands.mayFollow({ action_units: { AU12: 0.9 } })).toBe(true);
+    });
+
+    it('are left to it once it has heard of them', () => {
+      commands.set('action_units', 'L12', 0.6);
+      commands.set('action_units', 'R12', 0.6);
+      commands.set('jaw', 'pitch', 5);
+      drawFrame();
+      late(800);
+      const heard = { action_units: { AU12: 0.6 }, jaw: { pitch: 5 } };
+      expect(commands.mayFollow(heard)).toBe(true);
+      expect(commands.mayFollow({})).toBe(true);
+    });
+
+    it('are said before a performance goes on without them', () => {
+      commands.set('action_units', 'AU6', 0.5);
+      commands.perform({ action_units: { AU12: 0.3 } }, 0.1);
+      drawFrame();
+      expect(sent.map(({ action_units }) => action_units)).toEqual([{ AU6: 0.5 }, { AU12: 0.3 }]);
+    });
   });
 
   it('leads through feelings, each with the dominance that goes with it', () => {
@@ -138,7 +189,7 @@ describe('Commands', () => {
     commands.reset();
     drawFrame();
     expect(sent.map(({ layer }) => layer)).toEqual(['idle', 'mood', 'emotion', 'speech', 'puppet']);
-    expect(commands.handsOff).toBe(false);
+    expect(commands.mayFollow({})).toBe(false);
   });
 });
 

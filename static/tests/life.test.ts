@@ -34,6 +34,6 @@ describe('the switch', () => {
       { type: 'idle', on: true },
       { type: 'idle', on: false },
     ]);
-    expect(commands.handsOff).toBe(false);
+    expect(commands.mayFollow({})).toBe(false);
   });
 });

@@ -1,9 +1,12 @@
 // Handles of muscles, what dragging them comes to, and that only the newest edit is sent.
 
 import { describe, expect, it } from 'vitest';
-import { handlesOf, led, mirroredChange, placed, zoneOf } from '../src/inside/editing';
+import type { MuscleEditingParts } from '../src/app/muscle-editing';
+import { MuscleEditing } from '../src/app/muscle-editing';
+import { handlesOf, led, mirroredChange, placed, twinOf, zoneOf } from '../src/inside/editing';
 import { Newest } from '../src/inside/newest';
 import type { MuscleForm, Point } from '../src/muscle-shape';
+import { ViewerState } from '../src/state/viewer.svelte';
 
 const LINEAR: MuscleForm = {
   name: 'zygomatic_major.L',
@@ -122,6 +125,58 @@ describe('handles', () => {
         [-4, 5, 6],
       ],
     });
+  });
+});
+
+describe('a muscle in hand', () => {
+  const RIGHT: MuscleForm = { ...LINEAR, ...mirroredChange(LINEAR), name: 'zygomatic_major.R' };
+  const inHand = (): { viewer: ViewerState; editing: MuscleEditing; sent: string[] } => {
+    const viewer = new ViewerState();
+    const sent: string[] = [];
+    const editing = new MuscleEditing({
+      viewer,
+      scene: { invalidate: () => undefined },
+      layers: { load: () => Promise.resolve() },
+      patch: (muscle: string) => Promise.resolve(sent.push(muscle)),
+    } as unknown as MuscleEditingParts);
+    editing.use([LINEAR, RIGHT, RING], true);
+    editing.choose(LINEAR.name);
+    return { viewer, editing, sent };
+  };
+
+  it('is moved alone, or with its twin, and undone as it was moved', () => {
+    const { viewer, editing, sent } = inHand();
+    viewer.within.mirrored = false;
+    editing.edit({ insertion: [25, -60, 60] }, 'insertion');
+    viewer.within.mirrored = true;
+    editing.edit({ insertion: [31, -62, 60] }, 'insertion');
+    editing.edit({ insertion: [32, -63, 60] }, 'insertion');
+    expect(viewer.within.forms[RIGHT.name]!.insertion).toEqual([-32, -63, 60]);
+    expect(viewer.within.edits).toBe(2);
+    editing.undo();
+    expect(viewer.within.forms[RIGHT.name]).toEqual(RIGHT);
+    expect(viewer.within.forms[LINEAR.name]!.insertion).toEqual([25, -60, 60]);
+    editing.undo();
+    expect(viewer.within.changed).toEqual([]);
+    expect(viewer.within.edits).toBe(0);
+    expect(sent).toContain(LINEAR.name);
+  });
+
+  it('is put back on both sides where both are moved, and that is undone', () => {
+    const { viewer, editing } = inHand();
+    viewer.within.mirrored = true;
+    editing.edit({ radius: 90 }, 'radius');
+    expect(viewer.within.changed).toEqual([LINEAR.name, RIGHT.name]);
+    editing.reset();
+    expect(viewer.within.changed).toEqual([]);
+    editing.undo();
+    expect(viewer.within.forms[RIGHT.name]!.radius).toBe(90);
+  });
+
+  it('has a twin by its side, a ring around the middle none', () => {
+    expect(twinOf(LINEAR.name)).toBe(RIGHT.name);
+    expect(twinOf(RIGHT.name)).toBe(LINEAR.name);
+    expect(twinOf(RING.name)).toBe('');
   });
 });
 

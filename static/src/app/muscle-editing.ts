@@ -1,7 +1,7 @@
 // A muscle in hand: its handles on the face, what dragging them changes, and that as edits of the live face.
 
 import type { Face } from '../face';
-import { led, mirroredChange, onPlane, placed } from '../inside/editing';
+import { led, mirroredChange, onPlane, placed, twinOf } from '../inside/editing';
 import type { Handle } from '../inside/editing';
 import { HandleView } from '../inside/handle-view';
 import { Newest } from '../inside/newest';
@@ -46,7 +46,8 @@ export class MuscleEditing implements Overlay {
   /** As the service has them, and as they were when the face was opened. */
   private accepted: Record<string, MuscleForm> = {};
   private first: Record<string, MuscleForm> = {};
-  private readonly before: { muscle: string; form: MuscleForm }[] = [];
+  /** The muscles of each gesture as they were before it: both of a pair where both were moved. */
+  private readonly before: MuscleForm[][] = [];
   private gesture = '';
   private editedAt = -Infinity;
   /** From what a pointer touches to the place that it drags [mm]. */
@@ -103,31 +104,30 @@ export class MuscleEditing implements Overlay {
     const form = within.forms[within.muscle];
     if (form === undefined) return;
     const now = performance.now();
-    const named = `${form.name} ${gesture}`;
-    if (named !== this.gesture || now - this.editedAt > ONE_GESTURE_MS) this.keep(form);
+    const moved = this.moved(form);
+    const named = `${moved.map(({ name }) => name).join()} ${gesture}`;
+    if (named !== this.gesture || now - this.editedAt > ONE_GESTURE_MS) this.keep(moved);
     this.gesture = named;
     this.editedAt = now;
     this.change(form.name, change);
-    const twin = form.name.replace(/\.([LR])$/, (_, side) => (side === 'L' ? '.R' : '.L'));
-    if (within.mirrored && twin !== form.name && twin in within.forms) {
-      this.change(twin, mirroredChange(change));
-    }
+    for (const { name } of moved.slice(1)) this.change(name, mirroredChange(change));
   }
 
   undo(): void {
     const kept = this.before.pop();
     this.parts.viewer.within.edits = this.before.length;
     this.gesture = '';
-    if (kept !== undefined) this.change(kept.muscle, fieldsOf(kept.form));
+    for (const form of kept ?? []) this.change(form.name, fieldsOf(form));
   }
 
   reset(): void {
     const { within } = this.parts.viewer;
-    const [form, first] = [within.forms[within.muscle], this.first[within.muscle]];
-    if (form === undefined || first === undefined) return;
-    this.keep(form);
+    const form = within.forms[within.muscle];
+    if (form === undefined) return;
+    const moved = this.moved(form);
+    this.keep(moved);
     this.gesture = '';
-    this.change(form.name, fieldsOf(first));
+    for (const { name } of moved) this.change(name, fieldsOf(this.first[name] ?? {}));
   }
 
   move(): void {
@@ -226,8 +226,15 @@ export class MuscleEditing implements Overlay {
     this.refresh();
   }
 
-  private keep(form: MuscleForm): void {
-    this.before.push({ muscle: form.name, form });
+  /** The muscle in hand, and that of the other side where both are moved. */
+  private moved(form: MuscleForm): MuscleForm[] {
+    const { within } = this.parts.viewer;
+    const twin = within.mirrored ? within.forms[twinOf(form.name)] : undefined;
+    return twin === undefined ? [form] : [form, twin];
+  }
+
+  private keep(forms: MuscleForm[]): void {
+    this.before.push(forms);
     if (this.before.length > MOST_KEPT) this.before.shift();
     this.parts.viewer.within.edits = this.before.length;
   }
@@ -260,7 +267,7 @@ export class MuscleEditing implements Overlay {
   }
 }
 
-function fieldsOf(form: MuscleForm): Change {
+function fieldsOf(form: Change): Change {
   const there = FIELDS.filter((field) => form[field] !== undefined);
   return Object.fromEntries(there.map((field) => [field, form[field]]));
 }

@@ -41,12 +41,13 @@ export class Told {
     this.muscles.glow();
     viewer.facs = facsOf(state);
     this.later.cancel();
-    if (!this.commands.handsOff) {
+    const puppet = state.layers?.puppet ?? {};
+    if (!this.commands.mayFollow(puppet)) {
       this.later(state);
       return;
     }
     if (state.idle !== undefined) viewer.alive = state.idle !== null;
-    viewer.sliders.take(state.layers?.puppet ?? {});
+    viewer.sliders.take(puppet);
     const emotion = state.layers?.emotion?.emotion;
     viewer.emotion = expressionOf(emotion);
     if (emotion !== undefined) viewer.emotionIntensity = emotion.intensity;

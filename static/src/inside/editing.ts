@@ -145,6 +145,12 @@ export function zoneOf(muscle: MuscleForm): Point[][] {
   return [];
 }
 
+/** The name of a muscle's other one; empty for one that is not paired. */
+export function twinOf(muscle: string): string {
+  const side = /\.([LR])$/.exec(muscle)?.[1];
+  return side === undefined ? '' : `${muscle.slice(0, -1)}${side === 'L' ? 'R' : 'L'}`;
+}
+
 /** The muscle of the other side gets the same, mirrored. */
 export function mirroredChange(change: Change): Change {
   const flip = (value: unknown): unknown => {
