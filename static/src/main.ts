@@ -6,7 +6,7 @@ import { editByPointer } from './app/handle-pointer';
 import { HeatOverlay } from './app/heat-overlay';
 import { insideActions } from './app/inside-actions';
 import { LayerOverlay } from './app/layer-overlay';
-import { embed } from './app/embedding';
+import { embed, tellAround } from './app/embedding';
 import { loadFeelings, loadPeople } from './app/lists';
 import { mountControls, mountCurtain } from './app/mounting';
 import { MuscleEditing } from './app/muscle-editing';
@@ -83,8 +83,10 @@ const stage = new OnStage({
   takeFrame: () => connection.takeFrame(),
   ticket: () => api.ticket,
   who: () => opening.who,
-  onNothingDrawn: () => {
+  onNothingDrawn: (words) => {
+    opening.abandon();
     connection.close();
+    if (page.embed) tellAround({ state: 'closed', session: '', words });
   },
 });
 const { scene } = stage;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import threading
 import time
 from collections.abc import Iterator
@@ -20,10 +21,13 @@ from service.settings import Settings
 
 pytestmark = pytest.mark.browser
 START_SECONDS = 300.0
+KEY = "a-key-of-this-test-alone"
+BEARER = {"Authorization": f"Bearer {KEY}"}
 PAGE = """<!doctype html><title>A chat</title>
 <style>body {{ margin: 0; background: rgb(255, 0, 255) }} risorius-face {{ width: 240px }}</style>
 <script type="module" src="{service}/embed.js"></script>
-<risorius-face id="one" session="{session}"></risorius-face>
+<risorius-face id="one" session="{one}" ticket="{one_ticket}"></risorius-face>
+<risorius-face id="two" session="{two}" ticket="{two_ticket}" emotion="anger"></risorius-face>
 <risorius-face id="none" session="gone"></risorius-face>
 <p style="height: 3000px"></p>"""
 
@@ -54,11 +58,28 @@ def other_origin() -> Iterator[tuple[str, list[str]]]:
         server.server_close()
 
 
-def test_a_face_stands_on_a_page_of_another_origin(
+def opened(page: playwright_api.Page, api: str) -> str:
+    """Open a session and return its id."""
+    return str(page.request.post(api, data={}, headers=BEARER).json()["id"])
+
+
+def ticket(page: playwright_api.Page, session: str) -> str:
+    """Return a ticket that lets a page move a face."""
+    answer = page.request.post(f"{session}/tickets", data={"role": "control"}, headers=BEARER)
+    return str(answer.json()["ticket"])
+
+
+def felt(page: playwright_api.Page, session: str) -> str | None:
+    """Return the label that a face plays."""
+    layers = page.request.get(session, headers=BEARER).json()["layers"]
+    return layers["emotion"]["emotion"]["label"] if "emotion" in layers else None
+
+
+def test_faces_stand_on_a_page_of_another_origin_by_tickets(
     page: playwright_api.Page, tmp_path: Path
 ) -> None:
     with other_origin() as (origin, pages):
-        settings = Settings(data_dir=tmp_path, allowed_origins=(origin,))
+        settings = Settings(data_dir=tmp_path, allowed_origins=(origin,), api_keys=(KEY,))
         app = create_app(settings)
         with running(app, settings) as url:
             deadline = time.monotonic() + START_SECONDS
@@ -66,12 +87,16 @@ def test_a_face_stands_on_a_page_of_another_origin(
                 assert time.monotonic() < deadline, app.state.parts.stage
                 time.sleep(0.1)
             api = f"{url}/api/sessions"
-            session = page.request.post(api, data={}).json()["id"]
-            pages.append(PAGE.format(service=url, session=session))
+            one, two = (opened(page, api) for _ in range(2))
+            tickets = {"one_ticket": ticket(page, f"{api}/{one}")}
+            tickets["two_ticket"] = ticket(page, f"{api}/{two}")
+            pages.append(PAGE.format(service=url, one=one, two=two, **tickets))
             page.set_viewport_size({"width": 640, "height": 400})
             page.goto(origin)
             face = page.locator("#one")
             playwright_api.expect(face).to_have_attribute("state", "ready", timeout=120_000)
+            other = page.locator("#two")
+            playwright_api.expect(other).to_have_attribute("state", "ready", timeout=120_000)
             # Beside the head one sees the page behind; the head itself is no magenta.
             with Image.open(io.BytesIO(face.screenshot())) as taken:
                 picture = taken.convert("RGB")
@@ -80,15 +105,25 @@ def test_a_face_stands_on_a_page_of_another_origin(
             assert isinstance(middle, tuple)
             assert middle[1] > 30
             face.evaluate("face => face.setAttribute('emotion', 'joy')")
-            while "emotion" not in page.request.get(f"{api}/{session}").json()["layers"]:
+            while felt(page, f"{api}/{one}") != "joy":
                 assert time.monotonic() < deadline
                 page.wait_for_timeout(100)
+            assert felt(page, f"{api}/{two}") == "anger"
             page.evaluate("() => window.scrollTo(0, 2000)")
             playwright_api.expect(face).to_have_attribute("state", "resting", timeout=60_000)
-            while page.request.get(f"{api}/{session}").json()["viewers"] > 0:
+            while page.request.get(f"{api}/{one}", headers=BEARER).json()["viewers"] > 0:
                 assert time.monotonic() < deadline
                 page.wait_for_timeout(100)
+            # What it is asked where nobody sees it, it does when it is seen.
+            face.evaluate("face => face.setAttribute('emotion', 'anger')")
             page.evaluate("() => window.scrollTo(0, 0)")
             playwright_api.expect(face).to_have_attribute("state", "ready", timeout=60_000)
-            gone = page.locator("#none")
-            playwright_api.expect(gone).to_have_attribute("state", "waiting", timeout=60_000)
+            while felt(page, f"{api}/{one}") != "anger":
+                assert time.monotonic() < deadline
+                page.wait_for_timeout(100)
+            stranger = page.locator("#none")
+            playwright_api.expect(stranger).to_have_attribute("state", "locked", timeout=60_000)
+            page.request.delete(f"{api}/{two}", headers=BEARER)
+            over = re.compile("waiting|locked")
+            playwright_api.expect(other).to_have_attribute("state", over, timeout=60_000)
+            playwright_api.expect(face).to_have_attribute("state", "ready")

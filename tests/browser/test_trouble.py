@@ -11,14 +11,40 @@ PAGE = "?idle=0&level=low&dpr=0.5"
 expect = playwright_api.expect
 
 
-def test_a_browser_without_webgl_is_told(browser: playwright_api.Browser, url: str) -> None:
+NO_WEBGL = "This browser cannot draw the face: it has no WebGL 2."
+
+
+def test_a_browser_without_webgl_is_told_and_leaves_no_session_behind(
+    browser: playwright_api.Browser, url: str
+) -> None:
+    page = browser.new_page()
+    methods: list[str] = []
+    page.on("requestfinished", lambda request: methods.append(request.method))
+    try:
+        before = len(page.request.get(f"{url}/api/sessions").json()["sessions"])
+        page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+        page.goto(f"{url}/{PAGE}")
+        expect(page.locator("#curtain")).to_have_text(NO_WEBGL)
+        for _ in range(100):
+            if "DELETE" in methods:
+                break
+            page.wait_for_timeout(100)
+        assert methods.count("POST") == methods.count("DELETE") == 1
+        assert len(page.request.get(f"{url}/api/sessions").json()["sessions"]) == before
+    finally:
+        page.close()
+
+
+def test_an_embed_without_webgl_says_so_to_the_page_around(
+    browser: playwright_api.Browser, url: str
+) -> None:
     page = browser.new_page()
     try:
         page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
-        page.goto(f"{url}/{PAGE}")
-        expect(page.locator("#curtain")).to_have_text(
-            "This browser cannot draw the face: it has no WebGL 2."
-        )
+        html = "<risorius-face></risorius-face><script type=module src=/embed.js></script>"
+        page.route("**/a-chat", lambda route: route.fulfill(content_type="text/html", body=html))
+        page.goto(f"{url}/a-chat")
+        expect(page.locator("risorius-face")).to_have_attribute("state", "closed", timeout=30_000)
     finally:
         page.close()
 

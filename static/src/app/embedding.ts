@@ -12,6 +12,11 @@ interface Wish {
   intensity?: unknown;
 }
 
+/** Tell the page around how the face is: whoever shows it may know, there is nothing secret in it. */
+export function tellAround(how: { state: string; session: string; words: string }): void {
+  window.parent.postMessage({ risorius: 'state', ...how }, '*');
+}
+
 /** Stand in the element, as long as the page lives. */
 export function embed(
   viewer: ViewerState,
@@ -22,18 +27,23 @@ export function embed(
   let told = '';
   let last = 'opening';
   let seen = true;
+  /** What was asked while the face could not hear it. */
+  let asked: (() => void) | null = null;
   const tell = (): void => {
     // Between two attempts nothing is better than before them.
     const held = viewer.status === 'connecting' && last === 'waiting';
     const open = isReady() && viewer.status === 'open';
     const state = !seen ? 'resting' : open ? 'ready' : held ? last : stateOf(viewer);
     last = state;
+    if (open) {
+      asked?.();
+      asked = null;
+    }
     const words = viewer.locked || viewer.notice || viewer.detail;
     const key = `${state} ${viewer.session} ${words}`;
     if (key === told) return;
     told = key;
-    // Whoever shows the face may know how it is; there is nothing secret in it.
-    window.parent.postMessage({ risorius: 'state', state, session: viewer.session, words }, '*');
+    tellAround({ state, session: viewer.session, words });
   };
   window.setInterval(tell, TELL_MS);
   window.addEventListener('message', ({ source, data }: MessageEvent) => {
@@ -41,8 +51,12 @@ export function embed(
     if (source !== window.parent || wish?.risorius !== 'emotion') return;
     if (typeof wish.label !== 'string' || typeof wish.intensity !== 'number') return;
     const intensity = Math.min(1, Math.max(0, wish.intensity));
-    if (wish.label === '' || !Number.isFinite(intensity)) commands.stopEmotion();
-    else commands.playEmotion(wish.label, intensity);
+    const { label } = wish;
+    asked = () => {
+      if (label === '' || !Number.isFinite(intensity)) commands.stopEmotion();
+      else commands.playEmotion(label, intensity);
+    };
+    tell();
   });
   new IntersectionObserver(([entry]) => {
     const now = entry?.isIntersecting ?? true;

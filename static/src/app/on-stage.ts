@@ -38,8 +38,8 @@ export interface OnStageOptions {
   ticket: () => string;
   /** Whom the page shows, for sentences. */
   who: () => string;
-  /** The browser cannot draw. */
-  onNothingDrawn: () => void;
+  /** The browser cannot draw. @param words one sentence. */
+  onNothingDrawn: (words: string) => void;
 }
 
 export class OnStage {
@@ -169,8 +169,9 @@ export class OnStage {
         update: () => this.update(),
       });
     } catch (error) {
-      curtain.element().textContent = 'This browser cannot draw the face: it has no WebGL 2.';
-      this.options.onNothingDrawn();
+      const words = 'This browser cannot draw the face: it has no WebGL 2.';
+      curtain.element().textContent = words;
+      this.options.onNothingDrawn(words);
       throw error;
     }
   }

@@ -16,6 +16,8 @@ const LEAVING_MS = 1000;
 export class Opening {
   /** The session to attach to; empty to open one. */
   session: string;
+  /** Nobody will see what is opened. */
+  private abandoned = false;
 
   constructor(
     private readonly page: PageOptions,
@@ -69,6 +71,11 @@ export class Opening {
     if (session !== '') setTimeout(() => void this.closeUnwatched(session), LEAVING_MS);
   }
 
+  /** The page shows nothing: a session that is being opened for it is closed again. */
+  abandon(): void {
+    this.abandoned = true;
+  }
+
   /** Count who watches, where somebody looks at this page. */
   async countViewers(): Promise<void> {
     if (this.page.bare || document.hidden || this.viewer.status !== 'open') return;
@@ -99,6 +106,10 @@ export class Opening {
     viewer.step = { words: `Preparing ${this.who}`, share: null };
     void this.tellOfStart();
     const opened = await api.openSession(viewer.rigName, viewer.alive);
+    if (this.abandoned) {
+      await this.closeUnwatched(opened.id);
+      throw new Error('Nothing can be drawn here.');
+    }
     this.session = opened.id;
     const address = new URL(window.location.href);
     address.searchParams.set('session', this.session);
