@@ -14,7 +14,7 @@ run: $(STAMPS)/python $(STAMPS)/viewer
 
 test: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	npm --prefix static test
-	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile
+	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 check: $(STAMPS)/python-dev $(STAMPS)/node
 	$(BIN)/ruff format --check .
