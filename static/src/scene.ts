@@ -76,6 +76,8 @@ export interface SceneOptions {
   adaptive: boolean;
   /** Draw only when asked by `rendered`. */
   still: boolean;
+  /** Leave out what takes long to prepare, whatever the device can do. */
+  sketch: boolean;
   view: string;
   light: LightName;
   /** What it stands before; `none` shows the page behind. */
@@ -101,7 +103,7 @@ export class Scene {
   private readonly lights = createLights();
   /** Null where the ratio is given. */
   private readonly resolution: Resolution | null;
-  /** The driver draws in software: what takes long to prepare is left out until `complete`. */
+  /** What takes long to prepare is left out until `complete`: the driver draws in software, or so it is asked. */
   plain: boolean;
   private sharpening: ReturnType<typeof setTimeout> | undefined;
   private turning = false;
@@ -136,7 +138,7 @@ export class Scene {
       powerPreference: 'high-performance',
     });
     exposeSkin(this.renderer);
-    this.plain = options.adaptive && isSoftware(this.graphics);
+    this.plain = options.sketch || (options.adaptive && isSoftware(this.graphics));
     this.renderer.shadowMap.enabled = !this.plain;
     this.renderer.localClippingEnabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;

@@ -17,6 +17,8 @@ export interface PageOptions {
   idle: boolean;
   /** Draw only when `__viewer.render()` asks: for pictures, where each costs seconds. */
   still: boolean;
+  /** Stay with the sketch that slow devices show first: plain materials, no shadows; see sketch.ts. */
+  sketch: boolean;
   /** Name of a view, or degrees aside. */
   view: string;
   /** How the studio is lit. */
@@ -43,6 +45,7 @@ export function readPageOptions(search: string): PageOptions {
     embed: query.get('embed') === '1',
     idle: query.get('idle') !== '0',
     still: query.get('still') === '1',
+    sketch: query.get('draw') === 'sketch',
     view: isView(view) || (view !== '' && Math.abs(Number(view)) <= 180) ? view : 'front',
     light: isLight(light) ? light : 'studio',
     pixelRatio: pixelRatio > 0 && pixelRatio <= 4 ? pixelRatio : null,

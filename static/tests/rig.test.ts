@@ -107,6 +107,7 @@ describe('readPageOptions', () => {
       embed: false,
       idle: true,
       still: false,
+      sketch: false,
       view: 'front',
       light: 'studio',
       level: null,
@@ -124,7 +125,7 @@ describe('readPageOptions', () => {
   it('reads what is asked', () => {
     expect(
       readPageOptions(
-        '?session=a_1&rig=paper&bare=1&idle=0&still=1&view=profile&light=window&dpr=1',
+        '?session=a_1&rig=paper&bare=1&idle=0&still=1&draw=sketch&view=profile&light=window&dpr=1',
       ),
     ).toEqual({
       session: 'a_1',
@@ -133,6 +134,7 @@ describe('readPageOptions', () => {
       embed: false,
       idle: false,
       still: true,
+      sketch: true,
       view: 'profile',
       light: 'window',
       level: null,

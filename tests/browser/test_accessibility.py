@@ -33,7 +33,7 @@ def test_axe_finds_no_serious_fault(
         pytest.skip("axe-core is not installed: run `npm ci` in static/")
     page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
     page.set_viewport_size({"width": size[0], "height": size[1]})
-    page.goto(f"{url}/?idle=0&level=low&dpr=0.3")
+    page.goto(f"{url}/?idle=0&level=low&dpr=0.3&draw=sketch")
     settle(page)
     page.add_script_tag(path=AXE)
     found: list[str] = []

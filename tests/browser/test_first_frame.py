@@ -30,13 +30,13 @@ def test_the_parts_of_a_page_s_opening_are_measured() -> None:
 def test_a_person_who_leaves_does_not_close_the_face_of_others(
     browser: playwright_api.Browser, page: playwright_api.Page, url: str
 ) -> None:
-    page.goto(f"{url}/?idle=0&level=low&dpr=0.3")
+    page.goto(f"{url}/?idle=0&level=low&dpr=0.3&draw=sketch")
     settle(page)
     shared = page.evaluate("() => window.__viewer.session")
     guest = browser.new_page()
     guest.set_default_timeout(120_000)
     try:
-        guest.goto(f"{url}/?session={shared}&bare=1&still=1&level=low&dpr=0.2")
+        guest.goto(f"{url}/?session={shared}&bare=1&still=1&level=low&dpr=0.2&draw=sketch")
         guest.wait_for_function("() => window.__viewer?.connected")
         page.evaluate("() => document.querySelector('#people button:nth-of-type(2)').click()")
         page.wait_for_function("id => window.__viewer.session !== id", arg=shared)

@@ -10,7 +10,7 @@ from playwright import sync_api as playwright_api
 from viewer_page import settle, until
 
 pytestmark = pytest.mark.browser
-PAGE = "?idle=0&level=low&dpr=0.5"
+PAGE = "?idle=0&level=low&dpr=0.5&draw=sketch"
 """A face at rest, drawn as cheaply as it goes: what counts here are the panels."""
 expect = playwright_api.expect
 

@@ -19,7 +19,7 @@ def tissue_of(page: playwright_api.Page, url: str) -> dict[str, object]:
 
 def test_tissue_of_a_region_and_of_another_age(page: playwright_api.Page, url: str) -> None:
     page.set_viewport_size({"width": 1200, "height": 800})
-    page.goto(f"{url}/?idle=0&level=low&dpr=0.5")
+    page.goto(f"{url}/?idle=0&level=low&dpr=0.5&draw=sketch")
     settle(page)
     rig = held(page, url)["rig"]
     page.get_by_role("tab", name="Tissue").click()
@@ -38,3 +38,7 @@ def test_tissue_of_a_region_and_of_another_age(page: playwright_api.Page, url: s
     page.wait_for_function("session => window.__viewer.session !== session", arg=session)
     settle(page)
     assert tissue_of(page, url)["muscle_strength"] < 1.0  # type: ignore[operator]
+    # A sketch is all that was asked for: nobody fetched maps.
+    fetched = page.evaluate("() => performance.getEntriesByType('resource').map((e) => e.name)")
+    assert any("surface.glb" in name for name in fetched)
+    assert not any("/textures/" in name for name in fetched)

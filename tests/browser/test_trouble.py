@@ -7,7 +7,7 @@ from playwright import sync_api as playwright_api
 from viewer_page import settle
 
 pytestmark = pytest.mark.browser
-PAGE = "?idle=0&level=low&dpr=0.5"
+PAGE = "?idle=0&level=low&dpr=0.5&draw=sketch"
 expect = playwright_api.expect
 
 

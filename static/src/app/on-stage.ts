@@ -114,10 +114,17 @@ export class OnStage {
     curtain.open();
   }
 
-  /** Give the face all that it was shown without at first: its own materials, light that it mirrors, maps. */
+  /** Give the face all that it was shown without at first, unless a sketch is all that is asked for. */
   async finish(): Promise<void> {
     if (this.complete || this.face === null || this.loading) return;
-    const { face, uncover } = this;
+    if (!this.options.page.sketch) await this.dress(this.face);
+    this.complete = true;
+    mark('complete');
+  }
+
+  /** Put on a face its own materials, light that it mirrors, and maps. */
+  private async dress(face: Face): Promise<void> {
+    const { uncover } = this;
     this.uncover = null;
     if (uncover !== null) {
       await aPause();
@@ -127,8 +134,6 @@ export class OnStage {
       await this.scene.rendered();
     }
     void this.loadMaps(face);
-    this.complete = true;
-    mark('complete');
   }
 
   /** What the device can do; a picture of the page shows all that there is. */
@@ -158,6 +163,7 @@ export class OnStage {
         pixelRatio: page.pixelRatio,
         adaptive: !page.bare || page.embed,
         still: page.still,
+        sketch: page.sketch,
         view: page.view,
         light: page.light,
         ground: page.embed ? 'none' : page.bare ? 'dark' : useTheme(viewer.theme),
