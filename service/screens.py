@@ -22,6 +22,8 @@ Show = Callable[[str, float], None]
 _TIMEOUT_MS = 240_000
 _SETTLING_MS = 1500
 _QUALITY = 86
+_SHARP = "&dpr=1"
+"""Without a graphics processor a page draws what it can in time; a picture is waited for."""
 _SHOWN = "() => window.__viewer?.ready && window.__viewer.textured !== false"
 
 
@@ -79,8 +81,9 @@ def _taken(browser: Browser, url: str, name: str, scene: Scene) -> bytes:
     page.on("pageerror", lambda error: errors.append(str(error)))
     try:
         page.set_default_timeout(_TIMEOUT_MS)
-        page.goto(url + scene.address)
-        if viewer := scene.address.startswith("/?"):
+        viewer = scene.address.startswith("/?")
+        page.goto(url + scene.address + (_SHARP if viewer else ""))
+        if viewer:
             page.wait_for_function(_SHOWN)
         scene.play(page)
         page.wait_for_timeout(_SETTLING_MS)
