@@ -57,7 +57,7 @@ sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	$(BIN)/risorius sheet -o docs/tissue-regions.jpg --only 12E,18E,27E --view front --size 280 --columns 3 \
 		--edit '{"name": "stiff left", "tissue": {"region_stiffness": {"cheek.L": 10, "nasolabial.L": 10, "lip.L": 10}}}' \
 		--edit '{"name": "lax left", "tissue": {"region_laxity": {"cheek.L": 1, "nasolabial.L": 1, "lip.L": 1}}}'
-	$(BIN)/risorius screens -o docs --jpeg --only inside-dermis
+	$(BIN)/risorius screens -o docs --jpeg --only inside-dermis,viewer-phone
 
 # The people's pictures in the viewer.
 portraits: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
