@@ -22,7 +22,7 @@ def desk(page: playwright_api.Page, url: str) -> playwright_api.Page:
     """A page as wide as on a desk that may use the clipboard, its face open and still."""
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.set_viewport_size({"width": 1200, "height": 800})
-    page.goto(f"{url}/{PAGE}")
+    page.goto(f"{url}/{PAGE}&draw=sketch")
     settle(page)
     return page
 
@@ -50,7 +50,11 @@ def mean_light(image: Image.Image, box: tuple[float, float, float, float]) -> fl
     return sum(shade * count for shade, count in enumerate(shades)) / sum(shades)
 
 
-def test_light_theme_and_pictures(desk: playwright_api.Page, tmp_path: Path) -> None:
+def test_light_theme_and_pictures(page: playwright_api.Page, url: str, tmp_path: Path) -> None:
+    desk = page
+    desk.set_viewport_size({"width": 1200, "height": 800})
+    desk.goto(f"{url}/{PAGE}")
+    settle(desk)
     corner, left_cheek, right_cheek = (
         (0, 0.3, 0.1, 0.5),
         (0.52, 0.45, 0.58, 0.6),
@@ -98,7 +102,7 @@ def test_two_browsers_see_one_face_and_one_may_only_watch(
     assert "ticket=" in link
     guest = browser.new_page(viewport={"width": 320, "height": 240})
     try:
-        guest.goto(f"{link}&level=low&dpr=0.5")
+        guest.goto(f"{link}&level=low&dpr=0.5&draw=sketch")
         guest.wait_for_function("() => window.__viewer?.ready", timeout=120_000)
         rest = height(guest, "ch.L")
         expect(guest.locator("body")).to_have_class(re.compile("watching"))
