@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from playwright import sync_api as playwright_api
 from viewer_page import settle
@@ -47,6 +49,26 @@ def test_an_embed_without_webgl_says_so_to_the_page_around(
         expect(page.locator("risorius-face")).to_have_attribute("state", "closed", timeout=30_000)
     finally:
         page.close()
+
+
+def test_a_face_that_was_not_given_at_once_is_asked_for_again(
+    page: playwright_api.Page, url: str
+) -> None:
+    refused: list[str] = []
+
+    def refuse_once(route: playwright_api.Route) -> None:
+        address = route.request.url.split("?")[0]
+        if address in refused:
+            route.fallback()
+            return
+        refused.append(address)
+        route.fulfill(status=503, json={"error": "busy", "message": "try again"})
+
+    page.route("**/surface.glb*", refuse_once)
+    page.route(re.compile(r"/api/rigs/[0-9a-f]+$"), refuse_once)
+    page.goto(f"{url}/{PAGE}")
+    settle(page)
+    assert len(refused) == 2
 
 
 def test_a_service_of_another_version_is_told_apart(page: playwright_api.Page, url: str) -> None:

@@ -6,10 +6,18 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from playwright.sync_api import TimeoutError
+
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 PATIENCE_SECONDS = 30.0
+_STANDING = """() => {
+  const { ready, connected, session, rig, tick, framesDrawn, asleep } = window.__viewer ?? {};
+  const marks = performance.getEntriesByType('mark').map((mark) => mark.name);
+  const words = document.body.innerText.slice(0, 400);
+  return { ready, connected, session, rig, tick, framesDrawn, asleep, marks, words };
+}"""
 
 
 def height(page: Page, landmark: str) -> float:
@@ -23,12 +31,23 @@ def height(page: Page, landmark: str) -> float:
 
 def settle(page: Page, after: int = -1) -> int:
     """Wait until the face sleeps, later than a tick, and is drawn; return its tick."""
-    page.wait_for_function(
-        "t => window.__viewer?.ready && window.__viewer.asleep && window.__viewer.tick > t",
-        arg=after,
-    )
+    try:
+        page.wait_for_function(
+            "t => window.__viewer?.ready && window.__viewer.asleep && window.__viewer.tick > t",
+            arg=after,
+        )
+    except TimeoutError as error:
+        raise AssertionError(f"the face did not come to rest: {_standing(page)}") from error
     page.evaluate("() => window.__viewer.render()")
     return int(page.evaluate("() => window.__viewer.tick"))
+
+
+def _standing(page: Page) -> object:
+    """Return where a page stands that did not come as far as it should have."""
+    try:
+        return page.wait_for_function(_STANDING, timeout=5_000).json_value()
+    except TimeoutError:
+        return "its script does not answer"
 
 
 def held(page: Page, url: str) -> dict[str, Any]:

@@ -60,12 +60,15 @@ export class Told {
    * Describe the rig that the face is on.
    * @param isNew whether it is another face; otherwise an edit derived it, and the numbers of the first rig stay
    * what the sliders count from.
-   * @throws Error when the service does not describe it.
+   * @throws Error when the service does not describe it; the next call may try the same again.
    */
   async showRig(id: string, isNew: boolean): Promise<void> {
     const { viewer } = this;
     this.rigId = id;
-    const described = await this.api.rig(id);
+    const described = await this.api.rig(id).catch((error: unknown) => {
+      if (this.rigId === id) this.rigId = '';
+      throw error;
+    });
     if (this.rigId !== id) return;
     viewer.recipe = described.recipe;
     const rig = describeRig(described);

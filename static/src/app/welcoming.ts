@@ -11,6 +11,11 @@ import type { OnStage } from './on-stage';
 import type { Opening } from './opening';
 import type { Told } from './told';
 
+/** A service that is busy, or a line that broke, may give a face the next time: so often it is asked again. */
+const MOST_TRIES = 4;
+/** Before the first of them; each waits twice as long as the one before [ms]. */
+const TRY_AGAIN_MS = 1000;
+
 export class Welcoming {
   /** Asks of a new face what the one before it did, so that two rigs can be compared. */
   resume: (() => void) | null = null;
@@ -24,7 +29,8 @@ export class Welcoming {
     private readonly level: Level,
   ) {}
 
-  async take(hello: Hello): Promise<void> {
+  /** @param tries how often the face of this hello was asked for in vain. */
+  async take(hello: Hello, tries = 0): Promise<void> {
     mark('hello');
     const { api, viewer, opening, stage, told } = this;
     viewer.session = opening.session = hello.session;
@@ -51,6 +57,22 @@ export class Welcoming {
       viewer.step = null;
       void stage.finish();
       viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
+      this.tryAgain(hello, tries);
     }
+  }
+
+  /** Unless the page has gone on to another face meanwhile. */
+  private tryAgain(hello: Hello, tries: number): void {
+    if (tries >= MOST_TRIES) return;
+    setTimeout(
+      () => {
+        const { opening, stage, told, viewer } = this;
+        const missing = stage.address === '' || told.rigId === '';
+        if (opening.session !== hello.session || !missing) return;
+        viewer.say('');
+        void this.take(hello, tries + 1);
+      },
+      TRY_AGAIN_MS * 2 ** tries,
+    );
   }
 }
