@@ -16,6 +16,8 @@ from service.server import running
 
 WANTED = int(os.environ.get("RISORIUS_FUZZ_EXAMPLES", "0"))
 """Examples of each route and of each kind of message; 0 takes a few."""
+TIMEOUT = 0 if WANTED else 600
+"""Seconds that one test may take; 0 is as long as it lasts."""
 ROUTES = os.environ.get("RISORIUS_FUZZ_ROUTES", "")
 """A regular expression for the names of the routes to try, as "POST /api/facs"; empty tries all."""
 MANY = 1_000_000

@@ -15,7 +15,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from fuzzing import ANYTHING, examples, fuzzed
+from fuzzing import ANYTHING, TIMEOUT, examples, fuzzed
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from websockets.exceptions import ConnectionClosed
@@ -24,10 +24,11 @@ from websockets.sync.client import ClientConnection, connect
 from service.protocol import SUBPROTOCOL, decode_frame
 from service.settings import Settings
 
-pytestmark = pytest.mark.filterwarnings(
+pytestmark = [
+    pytest.mark.timeout(TIMEOUT),
     # Threads of the service are in this process, and draw from `random` while examples are made.
-    "ignore:Do not use the `random` module inside strategies"
-)
+    pytest.mark.filterwarnings("ignore:Do not use the `random` module inside strategies"),
+]
 EVENTS = {"hello", "state", "rig", "warning", "error"}
 REFUSED = {1002, 1003, 1007, 1009}
 """Codes with which a socket may be closed for what was sent; 1011 says that the service failed."""
