@@ -11,9 +11,9 @@ import json
 from collections.abc import AsyncGenerator, Callable, Mapping
 from contextlib import suppress
 
-from .clips import FINISHED, Clips
+from .clips import Clips
 from .errors import Busy, NotFound
-from .store import ClipRow
+from .store import FINISHED, ClipRow
 
 MOST_WATCHERS = 64
 """Streams of one clip at once."""

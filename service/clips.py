@@ -1,4 +1,4 @@
-"""Clips: asked for, queued, rendered, stored, forgotten; a table of jobs and no broker."""
+"""Clips: asked for, kept, given, forgotten; a table of jobs and no broker."""
 
 from __future__ import annotations
 
@@ -11,36 +11,31 @@ from pathlib import Path
 from typing import Any
 
 import structlog
-from pydantic import ValidationError
 
-from engine import EngineError, Rig
+from engine import Rig
 
 from .access import EVERYTHING, Access
 from .bodies import NewClip
-from .clip_folder import GIVEN, TRACK, ClipFolder
+from .clip_folder import ClipFolder
 from .clip_jobs import ClipJob
-from .clip_requests import Bounds, Played, played_by, request_of
-from .commands import how_told, live_model
-from .errors import Busy, Conflict, NotFound, Refused
-from .explaining import explain
-from .render_process import Order
-from .renderer import Renderer, RenderingEnded
+from .clip_requests import Bounds, played_by
+from .clip_work import ClipWork
+from .errors import Busy, Conflict, NotFound
+from .renderer import RenderingEnded
 from .rigs import Rigs
-from .store import ClipRow, Store
+from .store import FINISHED, ClipRow, Store
 from .track_file import TrackFile
 from .tracks import TrackClip, options_of
 from .uploads import Upload
 
 _LOG = structlog.get_logger("clips")
-FINISHED = ("done", "failed", "cancelled")
-"""States of a clip that has ended."""
 DAY_SECONDS = 86_400.0
 _SWEEP_SECONDS = 60.0
 """After which it is looked again for clips that were kept for long enough."""
 
 
 class Clips:
-    """Every clip of the store, and the jobs that render them.
+    """Every clip of the store, and the work on those that have not ended.
 
     `seen_by` gives them as somebody sees them, to whom those of others are not there.
     """
@@ -62,16 +57,14 @@ class Clips:
         self._access = EVERYTHING
         self._store = store
         self._rigs = rigs
-        self._renderer = Renderer()
         self._files = ClipFolder(folder)
         self._limit = limit
         self._queue_limit = queue_limit
         self._bounds = Bounds(max_seconds, max_keyframes)
         self._kept_seconds = kept_seconds
-        self._on_end = on_end
-        self._free = asyncio.Semaphore(processes)
-        self._reading = asyncio.Semaphore(1)
-        self._jobs: dict[str, ClipJob] = {}
+        self._work = ClipWork(
+            store, rigs, self._files, processes=processes, bounds=self._bounds, on_end=on_end
+        )
         self._sweeping: list[asyncio.Task[None]] = []
 
     def seen_by(self, access: Access, rigs: Rigs) -> Clips:
@@ -87,25 +80,15 @@ class Clips:
 
     def start(self) -> None:
         """Take up again what a stopped service left behind, and forget what is old from now on."""
-        for row in self._store.clips():
-            if row.status not in FINISHED:
-                try:
-                    request = request_of(row)
-                except ValidationError as error:
-                    why = explain(error.errors(), row.request)
-                    self._fail(row.id, f"this version cannot read it: {why}")
-                else:
-                    self._launch(row.id, request)
+        self._work.start()
         self._sweeping.append(asyncio.create_task(self._sweep(), name="old clips"))
 
     async def stop(self) -> None:
         """Stop rendering; what is not done is taken up at the next start."""
-        tasks = [job.task for job in self._jobs.values() if job.task is not None]
-        tasks += self._sweeping
-        for task in tasks:
+        for task in self._sweeping:
             task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-        await self._renderer.stop()
+        await asyncio.gather(*self._sweeping, return_exceptions=True)
+        await self._work.stop()
 
     async def submit(self, clip: NewClip) -> ClipRow:
         """Queue a clip.
@@ -136,8 +119,7 @@ class Clips:
         options = options_of(clip, self._bounds.seconds)
         self._check_room()
         try:
-            async with self._reading:  # Not behind clips that are being rendered.
-                report = await self._renderer.read(TrackFile(upload.path, options))
+            report = await self._work.read(TrackFile(upload.path, options))
         except RenderingEnded as error:
             _LOG.exception("a tracker's file could not be read", bytes=upload.size)
             raise Busy("not_read", "what read the file ended early; send it again") from error
@@ -151,7 +133,7 @@ class Clips:
             NotFound: If there is none of that id, or it is not theirs.
         """
         self.row(clip)  # Nobody waits for what is not there for them.
-        job = self._jobs.get(clip)
+        job = self._work.job(clip)
         if job is not None and job.task is not None and seconds > 0:
             await asyncio.wait({job.task}, timeout=seconds)
         return self.row(clip)
@@ -174,13 +156,18 @@ class Clips:
         rows = self._store.clips(self._access.key)
         return [row for row in rows if self._access.sees(row.made_by) and not self._is_old(row)]
 
+    @property
+    def under_way(self) -> int:
+        """How many clips are waiting or being rendered."""
+        return len(self._work)
+
     def job(self, clip: str) -> ClipJob | None:
         """Return the work on a clip, None if it has ended or not begun."""
-        return self._jobs.get(clip)
+        return self._work.job(clip)
 
     def describe(self, row: ClipRow) -> dict[str, object]:
         """Return what the API says of a clip."""
-        job = self._jobs.get(row.id)
+        job = self._work.job(row.id)
         progress = 1.0 if row.status == "done" else job.progress if job else 0.0
         line: dict[str, object] = {
             "id": row.id,
@@ -227,13 +214,7 @@ class Clips:
         if row.status in FINISHED:
             self._forget(clip)
             return
-        self._store.keep_clip(clip, status="cancelled", message="cancelled by a client")
-        self._on_end("cancelled")
-        job = self._jobs.get(clip)
-        if job is not None and job.task is not None:
-            job.task.cancel()
-            await asyncio.wait({job.task}, timeout=5.0)
-        self._files.remove(clip)
+        await self._work.cancel(clip)
 
     def _check_room(self) -> None:
         """Take no more clips than are rendered soon, and kept.
@@ -241,7 +222,7 @@ class Clips:
         Raises:
             Busy: If there are as many.
         """
-        if len(self._jobs) >= self._queue_limit:
+        if len(self._work) >= self._queue_limit:
             raise Busy("queue_full", f"{self._queue_limit} clips are waiting", retry_after=10)
         if self._store.clip_count() >= self._limit:
             message = f"{self._limit} clips are kept; delete one first"
@@ -276,7 +257,7 @@ class Clips:
         except BaseException:
             self._files.remove(name)
             raise
-        self._launch(row.id, clip)
+        self._work.begin(row.id, clip)
         return row
 
     def _is_old(self, row: ClipRow) -> bool:
@@ -299,70 +280,3 @@ class Clips:
             except Exception:
                 _LOG.exception("old clips could not be forgotten")
             await asyncio.sleep(_SWEEP_SECONDS)
-
-    def _launch(self, clip: str, request: NewClip | TrackClip) -> None:
-        job = self._jobs[clip] = ClipJob()
-        job.task = asyncio.create_task(self._run(clip, request, job), name=f"clip {clip}")
-
-        def ended(_task: object) -> None:
-            self._jobs.pop(clip, None)
-            job.tell()
-
-        job.task.add_done_callback(ended)
-
-    async def _run(self, clip: str, request: NewClip | TrackClip, job: ClipJob) -> None:
-        try:
-            async with self._free:
-                self._store.keep_clip(clip, status="running")
-                job.tell()
-                report = await self._render(clip, request, job)
-        except (EngineError, Refused) as error:
-            self._fail(clip, str(error))
-        except Exception:
-            _LOG.exception("a clip could not be rendered", clip=clip)
-            self._fail(clip, "the clip could not be rendered; the service's log says why")
-        else:
-            self._store.keep_clip(clip, status="done", report=report)
-            self._files.remove(clip, TRACK)
-            self._on_end("done")
-
-    async def _render(
-        self, clip: str, request: NewClip | TrackClip, job: ClipJob
-    ) -> Mapping[str, Any]:
-        rig = await self._rigs.get(request.rig)
-        root, steps = await self._rigs.made_from(request.rig)
-        if isinstance(request, TrackClip):
-            options = options_of(request, self._bounds.seconds)
-            played: Played[Any] = Played(TrackFile(self._files.path(clip, TRACK), options))
-        else:
-            played = played_by(request, rig, self._bounds)
-        textures = await self._rigs.textures(rig) if request.textures else {}
-        await asyncio.to_thread(self._files.folder.mkdir, parents=True, exist_ok=True)
-        order = Order(
-            root=root,
-            steps=steps,
-            timeline=played.timeline,
-            fps=request.fps,
-            model=live_model(played.model, rig),
-            start=played.start,
-            level=request.level,
-            textures=textures,
-            glb=self._files.path(clip, GIVEN[0]),
-            csv=self._files.path(clip, GIVEN[1]),
-            seed=played.seed,
-            **how_told(request),
-        )
-        figures = await self._renderer.render(order, job.show)
-        seconds = figures["simulation_seconds"] + figures["writing_seconds"]
-        notes = figures["track"]["notes"] if "track" in figures else []
-        return {
-            **figures,
-            "times_real_time": round((figures["duration"] + played.start) / max(seconds, 1e-3), 2),
-            "scales": played.scales,
-            "warnings": [*played.warnings, *notes],
-        }
-
-    def _fail(self, clip: str, message: str) -> None:
-        self._store.keep_clip(clip, status="failed", message=message)
-        self._files.remove(clip)
-        self._on_end("failed")

@@ -38,6 +38,8 @@ from sqlalchemy.schema import CreateColumn
 Row = TypeVar("Row", bound="Table")
 Answer = TypeVar("Answer")
 
+FINISHED = ("done", "failed", "cancelled")
+"""States of a clip that has ended."""
 _BUSY_TIMEOUT_MS = 5000
 
 
@@ -434,7 +436,7 @@ class Store:
         values: dict[str, Any] = {"status": status, "message": message}
         if report is not None:
             values["report"] = dict(report)
-        if status in ("done", "failed", "cancelled"):
+        if status in FINISHED:
             values["finished"] = time.time()
         with self._session.begin() as session:
             session.execute(update(ClipRow).where(ClipRow.id == clip).values(**values))

@@ -72,7 +72,7 @@ def left(client: TestClient) -> tuple[list[str], int, int]:
     """Return what there is of clips: files, rows, jobs."""
     parts = parts_of(client)
     names = sorted(path.name for path in parts.settings.clips_folder.glob("*"))
-    return names, parts.store.clip_count(), len(parts.clips._jobs)
+    return names, parts.store.clip_count(), parts.clips.under_way
 
 
 @pytest.mark.parametrize("name", HURTFUL)

@@ -192,7 +192,7 @@ def test_one_on_its_way_is_cancelled_and_leaves_nothing(client: TestClient) -> N
         assert client.delete(place).status_code == 204
         assert client.get(place).json()["status"] == "cancelled"
     assert folder_of(client) == before
-    assert not parts_of(client).clips._jobs
+    assert not parts_of(client).clips.under_way
 
 
 @pytest.fixture(scope="module")
