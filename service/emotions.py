@@ -23,6 +23,9 @@ from .errors import Unprocessable, refused_by_engine
 Turns = Counter[str]
 """How often each recipe was played: by it a label that is played again looks different."""
 
+_DECIMALS = 6
+"""Of an intensity that is a product: more would be noise of the arithmetic."""
+
 
 @dataclass(frozen=True)
 class Played:
@@ -31,7 +34,7 @@ class Played:
     Attributes:
         keyframe: The command.
         resolved: What it plays at intensity 1, and how that was found.
-        action_units: What it plays, in exact intensities.
+        action_units: What it plays, by name: as told, so held.
     """
 
     keyframe: Keyframe
@@ -79,7 +82,9 @@ def play_emotion(command: EmotionCommand, rig: Rig, turns: Turns) -> Played:
     resolved = _resolved(command, rig, turns)
     if command.seed is None and command.label is not None:
         turns.update({part.recipe for part in resolved.parts})
-    units = {key: value * command.intensity for key, value in resolved.units.items()}
+    units = {
+        key: round(value * command.intensity, _DECIMALS) for key, value in resolved.units.items()
+    }
     keyframe = Keyframe(
         layer=command.layer,
         owner=command.owner,

@@ -157,7 +157,7 @@ async def speak(session_id: str, body: SpeechCommand, parts: Parts) -> dict[str,
         "tick": tick,
         "owner": body.owner,
         "sound_in": body.delay,
-        "seconds": speech.seconds,
+        "seconds": round(speech.seconds, 4),
         "keyframes": len(speech.keyframes),
         "warnings": speech.warnings,
     }

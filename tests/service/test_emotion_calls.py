@@ -40,6 +40,12 @@ def test_an_emoji_is_a_label(client: TestClient, session: str) -> None:
     assert play(client, session, label="😡")["parts"][0]["recipe"] == "rage"
 
 
+def test_intensities_are_told_without_noise(client: TestClient, session: str) -> None:
+    for intensity in (0.1, 0.3, 0.7):
+        played = play(client, session, label="anger", seed=0, intensity=intensity)
+        assert all(len(repr(value)) <= 8 for value in played["action_units"].values())
+
+
 def test_a_label_played_again_looks_different(client: TestClient, session: str) -> None:
     faces = [play(client, session, label="anger")["recipe"] for _ in range(3)]
     assert faces[0] == RECIPES["anger"].variants[0].facs
