@@ -7,16 +7,10 @@ import {
   Mesh,
   ShaderMaterial,
 } from 'three';
+import type { Ground } from './ground';
+import { nearestPoint } from './ground';
 import type { Fibre, MuscleForm, Point } from './muscle-shape';
 import { fibresOf, outward } from './muscle-shape';
-
-/** What the muscles are tied to. */
-export interface Ground {
-  /** Streamed points at rest [mm, head frame], x y z after x y z. */
-  rest: Float32Array;
-  /** How far a streamed point has moved [m]. */
-  displacement(point: number): Point;
-}
 
 const METRES = 1e-3;
 const SIDES = 6;
@@ -119,9 +113,9 @@ export class MuscleView {
     const first = this.vertices.length;
     // All of a straight fibre goes with its skin end; each point of a ring with the skin over it.
     const isRing = follows[0] === 1;
-    const end = this.nearest(points.at(-1)!);
+    const end = nearestPoint(this.ground, points.at(-1)!);
     points.forEach((point, at) => {
-      const tied = isRing ? this.nearest(point) : end;
+      const tied = isRing ? nearestPoint(this.ground, point) : end;
       const [out, aside] = frameAt(points, at);
       for (let side = 0; side < SIDES; side++) {
         const angle = (2 * Math.PI * side) / SIDES;
@@ -137,17 +131,6 @@ export class MuscleView {
         built.index.push(a, b, b + SIDES, a, b + SIDES, a + SIDES);
       }
     });
-  }
-
-  private nearest([x, y, z]: Point): number {
-    const { rest } = this.ground;
-    let found = 0;
-    let least = Infinity;
-    for (let at = 0; at < rest.length / 3; at++) {
-      const away = Math.hypot(rest[3 * at]! - x, rest[3 * at + 1]! - y, rest[3 * at + 2]! - z);
-      if (away < least) [least, found] = [away, at];
-    }
-    return found;
   }
 }
 

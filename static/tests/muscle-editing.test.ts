@@ -3,9 +3,12 @@
 import { describe, expect, it } from 'vitest';
 import type { MuscleEditingParts } from '../src/app/muscle-editing';
 import { MuscleEditing } from '../src/app/muscle-editing';
+import { carriedFibre, carriedHandles, carriedZone, ledAsCarried } from '../src/inside/carried';
 import { handlesOf, led, mirroredChange, placed, twinOf, zoneOf } from '../src/inside/editing';
+import { nearestPoint, shiftOver } from '../src/ground';
 import { Newest } from '../src/inside/newest';
 import type { MuscleForm, Point } from '../src/muscle-shape';
+import { fibresOf } from '../src/muscle-shape';
 import { ViewerState } from '../src/state/viewer.svelte';
 
 const LINEAR: MuscleForm = {
@@ -125,6 +128,66 @@ describe('handles', () => {
         [-4, 5, 6],
       ],
     });
+  });
+});
+
+describe('handles on a face that moves', () => {
+  // Two points of skin: the one at the insertion goes up, the one at the other end of the face stays.
+  const ground = {
+    rest: new Float32Array([30, -60, 60, 0, 90, 90]),
+    displacement: (point: number): Point => (point === 0 ? [0.002, 0.01, 0] : [0, 0, 0]),
+  };
+  const shift = shiftOver(ground);
+  const drawnOf = (muscle: MuscleForm, id: string): Point =>
+    carriedHandles(muscle, shift).find((handle) => handle.id === id)!.drawn;
+
+  it('know how far the skin over them has gone', () => {
+    expect(nearestPoint(ground, [1, 80, 70])).toBe(1);
+    expect(shift([29, -50, 60])).toEqual([2, 10, 0]);
+  });
+
+  it('stand where its fibres end, and on the bone where those begin', () => {
+    const fibres = fibresOf(LINEAR).map((fibre) => carriedFibre(fibre, shift));
+    const middle = fibres[(fibres.length - 1) / 2]!;
+    expect(drawnOf(LINEAR, 'insertion')).toEqual([32, -50, 60]);
+    middle.at(-1)!.forEach((value, axis) => {
+      expect(value).toBeCloseTo(drawnOf(LINEAR, 'insertion')[axis]!);
+    });
+    expect(drawnOf(LINEAR, 'attachment')).toEqual(middle[0]);
+    expect(carriedHandles(LINEAR, shift).map(({ place }) => place)).toEqual(
+      handlesOf(LINEAR).map(({ place }) => place),
+    );
+    expect(carriedZone(LINEAR, shift)[0]).toEqual([LINEAR.attachment, [32, -50, 60]]);
+  });
+
+  it('go with the skin over a ring, and at either end of a sheet', () => {
+    expect(drawnOf(RING, 'center')).toEqual([2, -60, 110]);
+    expect(carriedZone(RING, shift)[0]![0]).toEqual([42, -60, 100]);
+    expect(drawnOf(SHEET, 'insertion.1')).toEqual([20, 20, 90]);
+    const low: MuscleForm = {
+      ...SHEET,
+      insertion: [
+        [0, 60, 90],
+        [28, -58, 60],
+      ],
+    };
+    expect(drawnOf(low, 'insertion.0')).toEqual([0, 60, 90]);
+    expect(drawnOf(low, 'insertion.1')).toEqual([30, -48, 60]);
+  });
+
+  it('that are led to where they are drawn change nothing', () => {
+    const led = (muscle: MuscleForm, id: string) =>
+      ledAsCarried(muscle, id, through(drawnOf(muscle, id)), shift);
+    const { radius } = led(LINEAR, 'radius');
+    expect(radius).toBeCloseTo(70);
+    expect(led(RING, 'semi_minor')).toEqual({ semi_minor: 20 });
+    expect(led(RING, 'semi_major')).toEqual({ semi_major: 40 });
+  });
+
+  it('keep a muscle that reaches beyond its insertion at rest', () => {
+    // The face has brought its ends together: 42 mm, and 50 at rest.
+    const { radius } = ledAsCarried(LINEAR, 'radius', through(drawnOf(LINEAR, 'insertion')), shift);
+    expect(radius).toBe(51);
   });
 });
 

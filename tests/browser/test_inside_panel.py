@@ -56,6 +56,12 @@ def until_rig_is_not(page: playwright_api.Page, rig: str) -> str:
     return str(page.evaluate("() => window.__viewer.rig"))
 
 
+def handles(page: playwright_api.Page) -> dict[str, np.ndarray]:
+    """Return where the handles of the muscle in hand are drawn on the page, CSS pixels."""
+    places = page.evaluate("() => window.__viewer.handles")
+    return {name: np.array([place["x"], place["y"]]) for name, place in places.items()}
+
+
 def until_edits_are_over(page: playwright_api.Page) -> None:
     """Wait until no edit has come for a while, and the face that they made is still."""
     rig = ""
@@ -67,9 +73,23 @@ def until_edits_are_over(page: playwright_api.Page) -> None:
 def test_a_muscle_follows_its_handle_and_the_face_the_muscle(opened: playwright_api.Page) -> None:
     page = opened
     page.get_by_role("combobox", name="Muscle in hand").select_option("zygomatic_major.L")
+    resting = handles(page)
     tick = page.evaluate("() => window.__viewer.tick")
     page.get_by_role("slider", name="Contract").fill("1")
     settle(page, tick)
+    drawn = handles(page)
+    assert np.linalg.norm(drawn["insertion"] - resting["insertion"]) > 4, "with the skin"
+    assert np.linalg.norm(drawn["attachment"] - resting["attachment"]) < 0.5, "on the bone"
+    field = page.get_by_role("spinbutton", name="Insertion y")
+    insertion = float(field.input_value())
+    page.mouse.move(*drawn["insertion"])
+    page.mouse.down()
+    page.mouse.move(*drawn["insertion"])
+    page.mouse.move(*drawn["insertion"] + [0, 6])
+    page.mouse.move(*drawn["insertion"])
+    page.mouse.up()
+    assert float(field.input_value()) == pytest.approx(insertion, abs=0.3), "as it is at rest"
+    page.get_by_role("button", name="Undo edit").click()
     before = {side: point(page, f"ch.{side}") for side in "LR"}
     rig = page.evaluate("() => window.__viewer.rig")
     at = page.evaluate("() => window.__viewer.handles.attachment")

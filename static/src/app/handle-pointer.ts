@@ -1,6 +1,6 @@
 // The pointer on the stage while muscles are edited: takes handles before the camera does, and chooses muscles by a click.
 
-import type { Handle } from '../inside/editing';
+import type { CarriedHandle } from '../inside/carried';
 import type { ViewerState } from '../state/viewer.svelte';
 import type { MuscleEditing } from './muscle-editing';
 
@@ -16,10 +16,10 @@ export function editByPointer(
   viewer: ViewerState,
   editing: MuscleEditing,
 ): void {
-  let held: Handle | null = null;
+  let held: CarriedHandle | null = null;
   let pressed: { x: number; y: number } | null = null;
 
-  const handleUnder = ({ clientX, clientY, pointerType }: PointerEvent): Handle | null =>
+  const handleUnder = ({ clientX, clientY, pointerType }: PointerEvent): CarriedHandle | null =>
     viewer.within.muscle === '' || viewer.within.beside !== 'off'
       ? null
       : editing.handleAt(clientX, clientY, pointerType === 'touch' ? FINGER_REACH : REACH);

@@ -1,8 +1,11 @@
 // A muscle in hand: its handles on the face, what dragging them changes, and that as edits of the live face.
 
 import type { Face } from '../face';
-import { led, mirroredChange, onPlane, placed, twinOf } from '../inside/editing';
-import type { Handle } from '../inside/editing';
+import type { Shift } from '../ground';
+import { groundOf, shiftOver } from '../ground';
+import type { CarriedHandle } from '../inside/carried';
+import { carriedFibre, ledAsCarried } from '../inside/carried';
+import { mirroredChange, onPlane, placed, twinOf } from '../inside/editing';
 import { HandleView } from '../inside/handle-view';
 import { Newest } from '../inside/newest';
 import type { MuscleForm } from '../muscle-shape';
@@ -42,6 +45,8 @@ export interface MuscleEditingParts {
 
 export class MuscleEditing implements Overlay {
   private face: Face | null = null;
+  /** How far the skin of the face has gone. */
+  private shift: Shift = () => [0, 0, 0];
   private view: HandleView | null = null;
   /** As the service has them, and as they were when the face was opened. */
   private accepted: Record<string, MuscleForm> = {};
@@ -67,6 +72,7 @@ export class MuscleEditing implements Overlay {
     this.view?.dispose();
     this.view = null;
     this.face = face;
+    this.shift = face === null ? () => [0, 0, 0] : shiftOver(groundOf(face));
     this.refresh();
   }
 
@@ -131,7 +137,7 @@ export class MuscleEditing implements Overlay {
   }
 
   move(): void {
-    // Handles stand where the muscle is at rest.
+    this.view?.move(this.shift);
   }
 
   step(): boolean {
@@ -142,16 +148,16 @@ export class MuscleEditing implements Overlay {
   get places(): Record<string, { x: number; y: number }> {
     const { view } = this;
     if (view === null) return {};
-    const place = ({ id, place: at }: Handle) =>
-      [id, this.parts.scene.screenPlace(view.world(at))] as const;
+    const place = ({ id, drawn }: CarriedHandle) =>
+      [id, this.parts.scene.screenPlace(view.world(drawn))] as const;
     return Object.fromEntries(view.handles.map(place));
   }
 
   /** The handle that is drawn nearest to a place of the page, if it is within `reach` CSS pixels. */
-  handleAt(x: number, y: number, reach: number): Handle | null {
-    let [found, least]: [Handle | null, number] = [null, reach];
+  handleAt(x: number, y: number, reach: number): CarriedHandle | null {
+    let [found, least]: [CarriedHandle | null, number] = [null, reach];
     for (const handle of this.view?.handles ?? []) {
-      const at = this.parts.scene.screenPlace(this.view!.world(handle.place));
+      const at = this.parts.scene.screenPlace(this.view!.world(handle.drawn));
       const away = Math.hypot(at.x - x, at.y - y);
       if (away < least) [found, least] = [handle, away];
     }
@@ -164,8 +170,8 @@ export class MuscleEditing implements Overlay {
     let [found, least] = ['', reach];
     if (this.view === null && !this.show()) return '';
     for (const form of Object.values(viewer.within.forms)) {
-      for (const { points } of fibresOf(form)) {
-        for (const point of points) {
+      for (const fibre of fibresOf(form)) {
+        for (const point of carriedFibre(fibre, this.shift)) {
           const at = scene.screenPlace(this.view!.world(point));
           const away = Math.hypot(at.x - x, at.y - y);
           if (away < least && scene.facing(this.view!.world(point)))
@@ -177,18 +183,19 @@ export class MuscleEditing implements Overlay {
   }
 
   /** A pointer takes a handle at a place of the page. */
-  grab(handle: Handle, x: number, y: number): void {
+  grab(handle: CarriedHandle, x: number, y: number): void {
     const hit = this.touched(handle, x, y);
     this.grip = hit === null ? [0, 0, 0] : minus(handle.place, hit);
   }
 
   /** And leads it to another. */
-  drag(handle: Handle, x: number, y: number): void {
+  drag(handle: CarriedHandle, x: number, y: number): void {
     const { within } = this.parts.viewer;
     const form = within.forms[within.muscle];
     if (form === undefined) return;
     if (handle.along === 'line' || handle.along === 'arc') {
-      this.edit(led(form, handle.id, this.parts.scene.rayIn(this.view!.group, x, y)), handle.id);
+      const ray = this.parts.scene.rayIn(this.view!.group, x, y);
+      this.edit(ledAsCarried(form, handle.id, ray, this.shift), handle.id);
       return;
     }
     const hit = this.touched(handle, x, y);
@@ -196,7 +203,7 @@ export class MuscleEditing implements Overlay {
   }
 
   /** Where a pointer touches what the handle goes along, as that is at rest [mm]. */
-  private touched(handle: Handle, x: number, y: number): Point | null {
+  private touched(handle: CarriedHandle, x: number, y: number): Point | null {
     const { scene, layers } = this.parts;
     if (handle.along === 'skin') {
       const hit = scene.hit(this.face!.skin, x, y);
@@ -207,9 +214,10 @@ export class MuscleEditing implements Overlay {
       const hit = scene.hit(skull, x, y);
       if (hit !== null) return hit.place;
     }
-    // Beside the head, or before its layers are there: along the picture.
+    // Beside the head, or before its layers are there: along the picture, through where it is drawn.
     const ray = scene.rayIn(this.view!.group, x, y);
-    return onPlane(ray, handle.place, ray.direction);
+    const hit = onPlane(ray, handle.drawn, ray.direction);
+    return hit === null ? null : plus(hit, minus(handle.place, handle.drawn));
   }
 
   private change(muscle: string, change: Change): void {
@@ -262,7 +270,7 @@ export class MuscleEditing implements Overlay {
       this.view = new HandleView();
       this.face.carry(this.view.group);
     }
-    this.view.show(within.forms[within.muscle] ?? null);
+    this.view.show(within.forms[within.muscle] ?? null, this.shift);
     return true;
   }
 }

@@ -1,6 +1,7 @@
 // The muscles over the face on the stage, while somebody looks inside.
 
 import type { Face } from '../face';
+import { groundOf } from '../ground';
 import type { MuscleForm } from '../muscle-shape';
 import { MuscleView } from '../muscle-view';
 import type { Scene } from '../scene';
@@ -33,13 +34,9 @@ export class MuscleOverlay implements Overlay {
     this.view?.dispose();
     this.view = null;
     if (this.viewer.inside && this.face !== null && this.muscles.length > 0) {
-      const { face } = this;
-      this.view = new MuscleView(this.muscles, {
-        rest: face.restPoints,
-        displacement: (at) => face.displacement(at),
-      });
+      this.view = new MuscleView(this.muscles, groundOf(this.face));
       this.view.show(this.viewer.merged.muscles ?? {});
-      face.carry(this.view.mesh);
+      this.face.carry(this.view.mesh);
     }
     this.scene.invalidate();
   }

@@ -88,8 +88,11 @@ export function placed(muscle: MuscleForm, id: string, place: Point): Change {
   return { [field]: ends };
 }
 
-/** What the muscle becomes when a handle that goes along a line or an arc is led by a ray. */
-export function led(muscle: MuscleForm, id: string, ray: Ray): Change {
+/**
+ * What the muscle becomes when a handle that goes along a line or an arc is led by a ray.
+ * @param rest the muscle at rest, where the one that is led is as a moving face carries it.
+ */
+export function led(muscle: MuscleForm, id: string, ray: Ray, rest = muscle): Change {
   if (id === 'angle') {
     const { from, way, aside, angle } = cone(muscle);
     const hit = onPlane(ray, from, cross(way, aside));
@@ -100,7 +103,9 @@ export function led(muscle: MuscleForm, id: string, ray: Ray): Change {
     };
   }
   if (id === 'radius') {
-    const { from, way, length } = muscle.kind === 'sheet' ? sheetReach(muscle) : cone(muscle);
+    const reach = muscle.kind === 'sheet' ? sheetReach : cone;
+    const { from, way } = reach(muscle);
+    const { length } = reach(rest);
     const most = MOST_REACH * length;
     return { radius: clamped(nearestOn(from, way, ray), LEAST_REACH * length, most) };
   }

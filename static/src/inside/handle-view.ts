@@ -1,17 +1,22 @@
 // The handles of a muscle on the face, and the outline of where it acts.
 
+import type { InterleavedBufferAttribute } from 'three';
 import { Color, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3 } from 'three';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
+import type { Shift } from '../ground';
 import type { MuscleForm } from '../muscle-shape';
+import type { CarriedHandle } from './carried';
+import { carriedHandles, carriedZone } from './carried';
 import type { Handle } from './editing';
-import { handlesOf, zoneOf } from './editing';
 
 const METRES = 1e-3;
 /** Of a handle's ball, and of the dark rim around it [m]. */
 const RADIUS = 2.8e-3;
 const RIM = 3.7e-3;
+/** Of a handle: rim and ball. */
+const BALLS = 2;
 /** Of the outline [CSS px]. */
 const WIDTH = 2;
 /** Drawn after the muscles. */
@@ -27,7 +32,8 @@ const COLORS: Record<Handle['along'], string> = {
 
 export class HandleView {
   readonly group = new Group();
-  handles: Handle[] = [];
+  handles: CarriedHandle[] = [];
+  private muscle: MuscleForm | null = null;
   private readonly ball = new SphereGeometry(RADIUS, 16, 12);
   private readonly rim = new SphereGeometry(RIM, 16, 12);
   private readonly zone = new LineSegments2(
@@ -43,18 +49,14 @@ export class HandleView {
     this.group.add(this.zone, this.balls);
   }
 
-  /** Show the handles of a muscle; of none, nothing. */
-  show(muscle: MuscleForm | null): void {
-    this.handles = muscle === null ? [] : handlesOf(muscle);
-    const places = (muscle === null ? [] : zoneOf(muscle)).flatMap((row) =>
-      row.slice(1).flatMap((point, at) => [...row[at]!, ...point]),
-    );
+  /** Show the handles of a muscle, carried by the face as it stands; of none, nothing. */
+  show(muscle: MuscleForm | null, shift: Shift): void {
+    this.muscle = muscle;
+    this.clear();
     this.zone.geometry.dispose();
     this.zone.geometry = new LineSegmentsGeometry();
-    this.zone.visible = places.length > 0;
-    if (places.length > 0) this.zone.geometry.setPositions(places.map((value) => value * METRES));
-    this.clear();
-    for (const { place, along } of this.handles) {
+    this.handles = muscle === null ? [] : carriedHandles(muscle, shift);
+    for (const { along } of this.handles) {
       for (const [geometry, color, order] of [
         [this.rim, '#15181c', LAST + 1],
         [this.ball, COLORS[along], LAST + 2],
@@ -67,10 +69,38 @@ export class HandleView {
         this.made.push(material);
         const mesh = new Mesh(geometry, material);
         mesh.renderOrder = order;
-        mesh.position.set(...(place.map((value) => value * METRES) as [number, number, number]));
         this.balls.add(mesh);
       }
     }
+    this.place(shift);
+  }
+
+  /** The face has moved: go where it has carried the muscle. */
+  move(shift: Shift): void {
+    if (this.muscle === null) return;
+    this.handles = carriedHandles(this.muscle, shift);
+    this.place(shift);
+  }
+
+  private place(shift: Shift): void {
+    this.balls.children.forEach((ball, at) => {
+      const { drawn } = this.handles[Math.floor(at / BALLS)]!;
+      ball.position.set(drawn[0] * METRES, drawn[1] * METRES, drawn[2] * METRES);
+    });
+    const lines = this.muscle === null ? [] : carriedZone(this.muscle, shift);
+    const places = lines.flatMap((line) =>
+      line.slice(1).flatMap((point, at) => [...line[at]!, ...point]),
+    );
+    this.zone.visible = places.length > 0;
+    const there = this.zone.geometry.getAttribute('instanceStart') as
+      InterleavedBufferAttribute | undefined;
+    const metres = places.map((value) => value * METRES);
+    if (there === undefined) {
+      if (this.zone.visible) this.zone.geometry.setPositions(metres);
+      return;
+    }
+    there.data.array.set(metres);
+    there.data.needsUpdate = true;
   }
 
   /** Where a place of the head's frame [mm] is in the world. */
