@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from engine import EngineError
 
 from .bodies import NewClip
+from .bystanders import Bystanders
 from .clip_folder import GIVEN, TRACK, ClipFolder
 from .clip_jobs import ClipJob
 from .clip_requests import Bounds, Played, played_by, request_of
@@ -40,6 +41,7 @@ class ClipWork:
         processes: Clips that are rendered at a time.
         bounds: How long a clip may be.
         on_end: Told the state in which a clip ended.
+        bystanders: Where the processes are that render.
     """
 
     def __init__(
@@ -51,13 +53,14 @@ class ClipWork:
         processes: int,
         bounds: Bounds,
         on_end: Callable[[str], None],
+        bystanders: Bystanders | None,
     ) -> None:
         self._store = store
         self._rigs = rigs
         self._files = files
         self._bounds = bounds
         self._on_end = on_end
-        self._renderer = Renderer()
+        self._renderer = Renderer(bystanders)
         self._free = asyncio.Semaphore(processes)
         self._reading = asyncio.Semaphore(1)
         self._jobs: dict[str, ClipJob] = {}

@@ -16,6 +16,7 @@ from engine import Rig
 
 from .access import EVERYTHING, Access
 from .bodies import NewClip
+from .bystanders import Bystanders
 from .clip_folder import ClipFolder
 from .clip_jobs import ClipJob
 from .clip_requests import Bounds, played_by
@@ -53,6 +54,7 @@ class Clips:
         max_keyframes: int,
         kept_seconds: float,
         on_end: Callable[[str], None],
+        bystanders: Bystanders | None = None,
     ) -> None:
         self._access = EVERYTHING
         self._store = store
@@ -63,7 +65,13 @@ class Clips:
         self._bounds = Bounds(max_seconds, max_keyframes)
         self._kept_seconds = kept_seconds
         self._work = ClipWork(
-            store, rigs, self._files, processes=processes, bounds=self._bounds, on_end=on_end
+            store,
+            rigs,
+            self._files,
+            processes=processes,
+            bounds=self._bounds,
+            on_end=on_end,
+            bystanders=bystanders,
         )
         self._sweeping: list[asyncio.Task[None]] = []
 

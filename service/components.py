@@ -18,6 +18,7 @@ from engine import Timeline, warm_kernels, warm_posing
 
 from .access import Access
 from .bodies import ModelChoice
+from .bystanders import Bystanders
 from .clips import DAY_SECONDS, Clips
 from .commands import live_model
 from .embedded import EmbeddedRunner
@@ -82,6 +83,7 @@ class Components:
         tickets: Tickets,
     ) -> Components:
         """Wire the parts; nothing runs before `start`."""
+        bystanders = Bystanders()
         store = Store(settings.database)
         keys.load(store.keys())
         keys.remember(store.clips(since=time.time() - HOUR_SECONDS))
@@ -90,10 +92,12 @@ class Components:
             cache_dir=settings.cache_dir / "files",
             cache_bytes=settings.max_cache_bytes,
             limit=settings.max_rigs,
+            bystanders=bystanders,
         )
         runner = EmbeddedRunner(
             simulation_threads=settings.simulation_threads,
             capacity=settings.capacity_share,
+            bystanders=bystanders,
         )
         sessions = Sessions(
             runner,
@@ -114,6 +118,7 @@ class Components:
             max_keyframes=settings.max_keyframes,
             kept_seconds=settings.clip_days * DAY_SECONDS,
             on_end=lambda status: metrics.clips.labels(status).inc(),
+            bystanders=bystanders,
         )
         expressions = Expressions(
             rigs,
@@ -121,6 +126,7 @@ class Components:
             cache_bytes=settings.max_cache_bytes,
             viewer_dir=settings.viewer_dir,
             queue_limit=settings.max_queued_expressions,
+            bystanders=bystanders,
         )
         insight = Insight(queue_limit=settings.max_queued_analyses)
         return cls(

@@ -32,6 +32,7 @@ from engine import (
     idle_keyframes,
 )
 
+from .bystanders import Bystanders
 from .errors import Busy, NotFound
 from .lives import Lives
 from .load import TICK_SECONDS, Load
@@ -45,6 +46,8 @@ from .writers import with_writers
 _LOG = structlog.get_logger("runner")
 _LATE_SECONDS = TICK_SECONDS / 2
 """From which on a tick counts as late: its frame then misses the picture of a display at 60 Hz."""
+_FULL_SECONDS = 0.3 * TICK_SECONDS
+"""Of a tick, from which on the next one is stepped without bystanders: less has time to spare."""
 _SWITCH_SECONDS = 0.0005
 """How long one thread may hold the interpreter while another waits for it. A tick asks for it after
 each kernel call; beside a busy thread, one tick in a hundred waited 12 ms for it with the default
@@ -163,16 +166,24 @@ class _Group:
 class EmbeddedRunner:
     """Every face in this process, on one simulation thread."""
 
-    def __init__(self, *, simulation_threads: int = 1, capacity: float = 1.0) -> None:
+    def __init__(
+        self,
+        *,
+        simulation_threads: int = 1,
+        capacity: float = 1.0,
+        bystanders: Bystanders | None = None,
+    ) -> None:
         """Make a runner; nothing runs before `start`.
 
         Args:
             simulation_threads: Live faces stepped at a time.
             capacity: Share of a tick that awake faces may take before new ones are refused.
+            bystanders: Held while a tick is stepped, where ticks are full.
         """
         self.counters = Counters()
         self.load = Load(threads=simulation_threads, share=capacity)
         self._threads = simulation_threads
+        self._bystanders = bystanders or Bystanders()
         self._mailbox = Mailbox()
         self._groups: list[_Group] = []
         self._home: dict[str, _Group] = {}
@@ -303,15 +314,20 @@ class EmbeddedRunner:
         due = 0.0  # When the tick that is next has to be done.
         while True:
             awake = self._runs()
-            started = time.perf_counter()
-            if not self._mailbox.answer_all(block=not awake):
-                return
-            if not self._runs():
-                continue
-            if not awake:  # Nothing ran until now: time begins with what was just asked for.
+            if awake and self.counters.last_tick_seconds > _FULL_SECONDS:
+                self._bystanders.hold()
+            try:
                 started = time.perf_counter()
-                due = started + TICK_SECONDS
-            stepped = self._step()
+                if not self._mailbox.answer_all(block=not awake):
+                    return
+                if not self._runs():
+                    continue
+                if not awake:  # Nothing ran until now: time begins with what was just asked for.
+                    started = time.perf_counter()
+                    due = started + TICK_SECONDS
+                stepped = self._step()
+            finally:
+                self._bystanders.let_go()
             due = self._pace(started, due, stepped)
 
     def _pace(self, started: float, due: float, stepped: int) -> float:

@@ -29,6 +29,7 @@ from engine import (
 
 from .awaited import Awaited
 from .bodies import Scale, Units
+from .bystanders import Bystanders
 from .clashes import clashes
 from .errors import Busy, NoPictures, Unprocessable, refused_by_engine
 from .expression_orders import Face, FaceOrder, PictureOrder
@@ -83,13 +84,20 @@ class Expressions:
     """Files and pictures of expressions, by what they show; who has one's tag needs no other."""
 
     def __init__(
-        self, rigs: Rigs, *, cache_dir: Path, cache_bytes: int, viewer_dir: Path, queue_limit: int
+        self,
+        rigs: Rigs,
+        *,
+        cache_dir: Path,
+        cache_bytes: int,
+        viewer_dir: Path,
+        queue_limit: int,
+        bystanders: Bystanders | None = None,
     ) -> None:
         self._rigs = rigs
         self._folder = cache_dir / "files"
         self._cache_bytes = cache_bytes
         self._viewer_dir = viewer_dir
-        self._faces = Workshop("expression_process")
+        self._faces = Workshop("expression_process", bystanders=bystanders)
         self._pictures = Workshop("picture_process", str(cache_dir), str(viewer_dir))
         self._under_way: Awaited[bytes] = Awaited(most=queue_limit)
 

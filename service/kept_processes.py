@@ -8,6 +8,7 @@ from asyncio.subprocess import PIPE, Process
 from contextlib import suppress
 
 from .apart import environment
+from .bystanders import Bystanders
 
 _KEPT_SECONDS = 60.0
 """For which a process waits for its next order: it takes a second or more to start, and 150 MB."""
@@ -18,15 +19,23 @@ _BUFFER_BYTES = 2**16
 class KeptProcesses:
     """Processes of one module, started when they are needed; they read orders from their input."""
 
-    def __init__(self, module: str, *arguments: str, longest_line: int = _BUFFER_BYTES) -> None:
+    def __init__(
+        self,
+        module: str,
+        *arguments: str,
+        bystanders: Bystanders | None = None,
+        longest_line: int = _BUFFER_BYTES,
+    ) -> None:
         """Start none yet.
 
         Args:
             module: Of this package, run by its name.
             arguments: It is run with.
+            bystanders: Where they are while they have an order.
             longest_line: Bytes of the longest line that it answers with.
         """
         self._command = (sys.executable, "-m", f"{__package__}.{module}", *arguments)
+        self._bystanders = bystanders or Bystanders()
         self._longest_line = longest_line
         self._idle: dict[Process, asyncio.TimerHandle] = {}
 
@@ -41,6 +50,11 @@ class KeptProcesses:
         Raises:
             OSError: If none can be started.
         """
+        process = await self._taken()
+        self._bystanders.add(process.pid)
+        return process
+
+    async def _taken(self) -> Process:
         while self._idle:
             process, timer = self._idle.popitem()
             timer.cancel()
@@ -56,24 +70,25 @@ class KeptProcesses:
 
     def keep(self, process: Process) -> None:
         """Have one wait for its next order."""
+        self._bystanders.remove(process.pid)
         timer = asyncio.get_running_loop().call_later(_KEPT_SECONDS, self._let_go, process)
         self._idle[process] = timer
+
+    async def end(self, process: Process) -> None:
+        """Kill one that has not come to the end of its order."""
+        self._bystanders.remove(process.pid)
+        with suppress(ProcessLookupError):
+            process.kill()
+        await process.wait()
 
     async def stop(self) -> None:
         """End those that wait."""
         for process in list(self._idle):
             self._idle.pop(process).cancel()
-            await end(process)
+            await self.end(process)
 
     def _let_go(self, process: Process) -> None:
         """Tell a process that no more comes: it then ends."""
         self._idle.pop(process, None)
         assert process.stdin is not None
         process.stdin.close()
-
-
-async def end(process: Process) -> None:
-    """Kill a process."""
-    with suppress(ProcessLookupError):
-        process.kill()
-    await process.wait()

@@ -14,8 +14,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from .bystanders import Bystanders
 from .errors import Unprocessable
-from .kept_processes import KeptProcesses, end
+from .kept_processes import KeptProcesses
 from .render_process import Order
 from .track_file import LONGEST_REPORT, TrackFile
 from .whole_files import part_of
@@ -31,8 +32,10 @@ class RenderingEnded(Exception):
 class Renderer:
     """Processes that render clips, made when they are needed and kept for a while."""
 
-    def __init__(self) -> None:
-        self._processes = KeptProcesses("render_process", longest_line=_LONGEST_LINE)
+    def __init__(self, bystanders: Bystanders | None = None) -> None:
+        self._processes = KeptProcesses(
+            "render_process", bystanders=bystanders, longest_line=_LONGEST_LINE
+        )
 
     async def render(self, order: Order, progress: Callable[[float], None]) -> Mapping[str, Any]:
         """Render a clip and return its figures; whoever cancels it ends its process.
@@ -68,7 +71,7 @@ class Renderer:
             self._processes.keep(process)
             raise
         except BaseException:
-            await end(process)
+            await self._processes.end(process)
             for path in files:  # It had no time to do so where it was killed.
                 part_of(path, process.pid).unlink(missing_ok=True)
             raise

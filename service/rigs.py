@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,7 @@ from engine import (
 
 from .access import EVERYTHING, Access
 from .baking import baked_apart
+from .bystanders import Bystanders
 from .deriving import Steps, derived, derived_by_steps, in_plain_changes
 from .errors import Busy, NotFound, refused_by_engine
 from .explaining import did_you_mean
@@ -123,8 +125,17 @@ class Rigs:
     derived rigs that it made.
     """
 
-    def __init__(self, store: Store, *, cache_dir: Path, cache_bytes: int, limit: int) -> None:
+    def __init__(
+        self,
+        store: Store,
+        *,
+        cache_dir: Path,
+        cache_bytes: int,
+        limit: int,
+        bystanders: Bystanders | None = None,
+    ) -> None:
         self._access = EVERYTHING
+        self._bake = partial(baked_apart, bystanders=bystanders)
         self._store = store
         self._cache_dir = cache_dir
         self._cache_bytes = cache_bytes
@@ -300,7 +311,7 @@ class Rigs:
 
     def _baked(self, rig: Rig) -> Mapping[str, bytes]:
         try:
-            return textures_of(rig, bake=baked_apart, cancelled=self._closing.is_set)
+            return textures_of(rig, bake=self._bake, cancelled=self._closing.is_set)
         except Cancelled:
             raise
         except Exception:

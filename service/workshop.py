@@ -8,7 +8,8 @@ from asyncio.subprocess import Process
 from contextlib import suppress
 from typing import Any
 
-from .kept_processes import KeptProcesses, end
+from .bystanders import Bystanders
+from .kept_processes import KeptProcesses
 from .workbench import LENGTH_BYTES, Made, NotMade
 
 
@@ -19,9 +20,15 @@ class WorkEnded(Exception):
 class Workshop:
     """Processes of one module, started when they are needed and kept for a while."""
 
-    def __init__(self, module: str, *arguments: str, processes: int = 1) -> None:
+    def __init__(
+        self,
+        module: str,
+        *arguments: str,
+        processes: int = 1,
+        bystanders: Bystanders | None = None,
+    ) -> None:
         self._free = asyncio.Semaphore(processes)
-        self._processes = KeptProcesses(module, *arguments)
+        self._processes = KeptProcesses(module, *arguments, bystanders=bystanders)
 
     async def make(self, order: object) -> Any:
         """Return what a process makes of `order`; whoever cancels it ends that process.
@@ -35,7 +42,7 @@ class Workshop:
             try:
                 answer = await _answered(process, order)
             except BaseException:
-                await end(process)
+                await self._processes.end(process)
                 raise
             self._processes.keep(process)
         if isinstance(answer, NotMade):
