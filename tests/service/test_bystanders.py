@@ -144,18 +144,24 @@ def test_full_ticks_are_stepped_alone(
 
 
 def test_who_is_held_ends_with_a_service_that_is_killed(tmp_path: Path) -> None:
+    empty = tmp_path / "empty.csv"
+    empty.touch()
     code = f"""
         import asyncio, pathlib, time
+        from engine import TrackOptions
         from service.bystanders import Bystanders
-        from service.kept_processes import KeptProcesses
+        from service.errors import Unprocessable
+        from service.renderer import Renderer
+        from service.track_file import TrackFile
 
         async def body():
+            renderer = Renderer()
+            try:
+                await renderer.read(TrackFile(pathlib.Path({str(empty)!r}), TrackOptions()))
+            except Unprocessable:
+                (process,) = renderer._processes.waiting
             bystanders = Bystanders()
-            process = await KeptProcesses("render_process", bystanders=bystanders).take()
-            # It has taken no order, and is ready for one when it sleeps on its input.
-            shown = pathlib.Path(f"/proc/{{process.pid}}/wchan")
-            while "pipe" not in shown.read_text():
-                time.sleep(0.05)
+            bystanders.add(process.pid)
             bystanders.hold()
             pathlib.Path({str(tmp_path / "pid")!r}).write_text(str(process.pid))
             time.sleep(600)
@@ -164,8 +170,9 @@ def test_who_is_held_ends_with_a_service_that_is_killed(tmp_path: Path) -> None:
     """
     owner = subprocess.Popen([sys.executable, "-c", textwrap.dedent(code)], cwd=ROOT)
     try:
-        until((tmp_path / "pid").is_file, seconds=60)
-        process = int((tmp_path / "pid").read_text())
+        written = tmp_path / "pid"
+        until(lambda: written.is_file() and written.read_text() != "", seconds=60)
+        process = int(written.read_text())
         until(lambda: state(process) == "T")
     finally:
         owner.send_signal(signal.SIGKILL)
