@@ -7,10 +7,11 @@ import {
   Mesh,
   ShaderMaterial,
 } from 'three';
+import { fibresOn } from './draped';
 import type { Ground } from './ground';
 import { nearestPoint } from './ground';
 import type { Fibre, MuscleForm, Point } from './muscle-shape';
-import { fibresOf, outward } from './muscle-shape';
+import { outward } from './muscle-shape';
 
 const METRES = 1e-3;
 const SIDES = 6;
@@ -45,7 +46,7 @@ export class MuscleView {
     this.wanted = new Float32Array(muscles.length);
     const built = { positions: [] as number[], normals: [] as number[], index: [] as number[] };
     muscles.forEach((muscle, at) => {
-      for (const fibre of fibresOf(muscle)) this.addTube(fibre, at, built);
+      for (const fibre of fibresOn(muscle, ground)) this.addTube(fibre, at, built);
     });
     this.rest = new Float32Array(built.positions);
     const geometry = new BufferGeometry();

@@ -1,6 +1,8 @@
 // Muscles as fibres.
 
 import { describe, expect, it } from 'vitest';
+import { fibresOn } from '../src/draped';
+import type { MuscleForm } from '../src/muscle-shape';
 import { fibresOf } from '../src/muscle-shape';
 
 describe('fibresOf', () => {
@@ -55,5 +57,39 @@ describe('fibresOf', () => {
 
   it('has nothing to draw for lids and air', () => {
     expect(fibresOf({ name: 'levator_palpebrae.L', kind: 'lid' })).toEqual([]);
+  });
+
+  it('lays rings under the skin of a round face, and leaves other fibres', () => {
+    const radius = 90;
+    const rest: number[] = [];
+    for (let x = -60; x <= 60; x += 3)
+      for (let y = -60; y <= 60; y += 3)
+        rest.push(x, y, Math.sqrt(radius ** 2 - x * x - y * y), x, y, -20);
+    const ground = {
+      rest: new Float32Array(rest),
+      displacement: (): [number, number, number] => [0, 0, 0],
+    };
+    const ring: MuscleForm = {
+      name: 'orbicularis_oris',
+      kind: 'sphincter',
+      plane: [0, 0, 95],
+      normal: [0, 0, 1],
+      semi_major: 40,
+      semi_minor: 20,
+    };
+    const flat = fibresOf(ring)[2]!.points;
+    const draped = fibresOn(ring, ground)[2]!.points;
+    draped.forEach(([x, y, z], at) => {
+      expect([x, y]).toEqual(flat[at]!.slice(0, 2));
+      expect(Math.hypot(x, y, z)).toBeGreaterThan(radius - 2);
+      expect(Math.hypot(x, y, z)).toBeLessThan(radius);
+    });
+    const linear: MuscleForm = {
+      name: 'risorius.L',
+      kind: 'linear',
+      attachment: [50, 0, 50],
+      insertion: [20, 0, 80],
+    };
+    expect(fibresOn(linear, ground)).toEqual(fibresOf(linear));
   });
 });

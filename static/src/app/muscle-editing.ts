@@ -1,7 +1,8 @@
 // A muscle in hand: its handles on the face, what dragging them changes, and that as edits of the live face.
 
+import { fibresOn } from '../draped';
 import type { Face } from '../face';
-import type { Shift } from '../ground';
+import type { Ground, Shift } from '../ground';
 import { groundOf, shiftOver } from '../ground';
 import type { CarriedHandle } from '../inside/carried';
 import { carriedFibre, ledAsCarried } from '../inside/carried';
@@ -34,6 +35,7 @@ const FIELDS = [
 /** Edits of one field that follow each other within this are undone together [ms]. */
 const ONE_GESTURE_MS = 900;
 const MOST_KEPT = 100;
+const NO_GROUND: Ground = { rest: new Float32Array(), displacement: () => [0, 0, 0] };
 
 export interface MuscleEditingParts {
   viewer: ViewerState;
@@ -45,6 +47,7 @@ export interface MuscleEditingParts {
 
 export class MuscleEditing implements Overlay {
   private face: Face | null = null;
+  private ground: Ground = NO_GROUND;
   /** How far the skin of the face has gone. */
   private shift: Shift = () => [0, 0, 0];
   private view: HandleView | null = null;
@@ -72,7 +75,8 @@ export class MuscleEditing implements Overlay {
     this.view?.dispose();
     this.view = null;
     this.face = face;
-    this.shift = face === null ? () => [0, 0, 0] : shiftOver(groundOf(face));
+    this.ground = face === null ? NO_GROUND : groundOf(face);
+    this.shift = face === null ? () => [0, 0, 0] : shiftOver(this.ground);
     this.refresh();
   }
 
@@ -170,7 +174,7 @@ export class MuscleEditing implements Overlay {
     let [found, least] = ['', reach];
     if (this.view === null && !this.show()) return '';
     for (const form of Object.values(viewer.within.forms)) {
-      for (const fibre of fibresOf(form)) {
+      for (const fibre of fibresOn(form, this.ground)) {
         for (const point of carriedFibre(fibre, this.shift)) {
           const at = scene.screenPlace(this.view!.world(point));
           const away = Math.hypot(at.x - x, at.y - y);
