@@ -20,12 +20,14 @@ _BLANK = "/api/health"
 _CHAT = """<!doctype html><title>A chat</title>
 <style>
   body {{ margin: 0; font: 16px/1.5 system-ui; background: {ground}; color: {ink} }}
-  main {{ max-width: 40rem; margin: 2rem auto; display: grid; gap: 1rem;
-    grid-template-columns: 14rem 1fr; align-items: end }}
-  p {{ padding: 0.8rem 1rem; border-radius: 1rem; background: {bubble}; margin: 0 0 1rem }}
+  main {{ max-width: 43rem; margin: 1rem auto; display: grid; gap: 2rem;
+    grid-template-columns: 16rem 1fr; align-items: center }}
+  p {{ width: fit-content; padding: 0.8rem 1rem; border-radius: 1rem; background: {bubble};
+    margin: 0 0 0.6rem }}
 </style>
 <main>
-  <risorius-face emotion="{emotion}" idle="0" style="width: 14rem"></risorius-face>
+  <risorius-face emotion="{emotion}" idle="0" dpr="2"
+    style="width: 16rem"></risorius-face>
   <div><p>You made it! I was beginning to wonder.</p><p>Shall we go through your list?</p></div>
 </main>
 <script type="module" src="/embed.js"></script>
@@ -56,7 +58,14 @@ def _click(page: Page, name: str) -> None:
 
 
 def _feel(emotion: str, page: Page) -> None:
+    """Play an emotion, and see the face begin."""
+    tick = page.evaluate("() => window.__viewer.tick")
     _click(page, emotion)
+    page.wait_for_function("tick => window.__viewer.tick > tick", arg=tick)
+
+
+def _rest(page: Page) -> None:
+    page.wait_for_function("() => window.__viewer.asleep")
 
 
 def _wander(page: Page) -> None:
@@ -85,7 +94,7 @@ def _inside(page: Page) -> None:
 def _muscles(page: Page) -> None:
     """Draw the muscles of anger."""
     _inside(page)
-    _click(page, "Anger")
+    _feel("Anger", page)
     page.keyboard.press("m")
 
 
@@ -98,13 +107,13 @@ def _edit(page: Page) -> None:
 
 def _peel(layer: str, page: Page) -> None:
     _inside(page)
-    _click(page, "Happiness")
+    _feel("Happiness", page)
     page.get_by_role("group", name="Peel to").get_by_role("button", name=layer, exact=True).click()
 
 
 def _colour(measure: str, page: Page) -> None:
     _inside(page)
-    _click(page, "Happiness")
+    _feel("Happiness", page)
     group = page.get_by_role("group", name="Colour by")
     group.get_by_role("button", name=measure, exact=True).click()
 
@@ -113,19 +122,22 @@ def _ways(page: Page) -> None:
     """Leave the ways of points from rest to surprise."""
     _inside(page)
     page.get_by_role("switch", name="Ways of points").click()
-    _click(page, "Surprise")
+    _feel("Surprise", page)
 
 
 def _beside(whom: str, page: Page) -> None:
     """Stand a held smile, or the paper's face, beside a live one."""
     _inside(page)
-    _click(page, "Happiness")
-    page.wait_for_timeout(_SETTLING_MS)
+    _feel("Happiness", page)
+    _rest(page)
     _click(page, "Hold this moment")
     group = page.get_by_role("group", name="Beside it")
     group.get_by_role("button", name=whom, exact=True).click()
-    page.wait_for_timeout(2 * _SETTLING_MS)
-    _click(page, "Disgust")
+    page.locator("#legend .left[aria-busy=false]").wait_for()
+    _feel("Disgust", page)
+    _rest(page)
+    # Who stands beside comes to rest in its own time.
+    page.wait_for_timeout(_SETTLING_MS)
 
 
 def _chat(emotion: str, colours: Mapping[str, str], page: Page) -> None:
@@ -135,6 +147,8 @@ def _chat(emotion: str, colours: Mapping[str, str], page: Page) -> None:
     page.route(address, lambda route: route.fulfill(content_type="text/html", body=html))
     page.goto(address)
     page.locator('risorius-face:is([state="ready"], [state="resting"])').wait_for()
+    frame = next(frame for frame in page.frames if frame != page.main_frame)
+    frame.wait_for_function("() => window.__viewer.textured && window.__viewer.asleep")
 
 
 SCENES: Mapping[str, Scene] = {
@@ -161,7 +175,7 @@ SCENES: Mapping[str, Scene] = {
     "inside-ways": Scene(_ways),
     "inside-held": Scene(partial(_beside, "Held moment")),
     "inside-paper": Scene(partial(_beside, "Paper\u2019s face")),
-    "embed": Scene(partial(_chat, "joy", _NIGHT), (760, 420), address=_BLANK),
-    "embed-light": Scene(partial(_chat, "amusement", _PAPER), (760, 420), "light", _BLANK),
+    "embed": Scene(partial(_chat, "joy", _NIGHT), (740, 360), address=_BLANK),
+    "embed-light": Scene(partial(_chat, "amusement", _PAPER), (740, 360), "light", _BLANK),
 }
 """Every picture by its name: the whole viewer, six emotions, each view of the inside, the embed."""

@@ -1,7 +1,7 @@
 // <risorius-face>: a live face on somebody else's page, as an element of it.
 
 /** What becomes of the page's address inside, from the attributes of the element. */
-const ASKED = ['session', 'ticket', 'rig', 'view', 'light', 'idle'] as const;
+const ASKED = ['session', 'ticket', 'rig', 'view', 'light', 'idle', 'dpr'] as const;
 const SERVICE = new URL('./', import.meta.url);
 
 class RisoriusFace extends HTMLElement {

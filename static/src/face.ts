@@ -119,6 +119,8 @@ export class Face {
   /** Labels of the regions of its skin. */
   readonly regionNames: readonly string[];
   readonly skin: Mesh;
+  /** Heights between which the neck fades into the ground [mm]; null for a mask without a neck. */
+  readonly neckFade: readonly [number, number] | null;
   private readonly surface: DrawnSurface;
   private readonly normals: MovingNormals;
   private readonly skinPosition: BufferAttribute;
@@ -249,7 +251,8 @@ export class Face {
       'eye.L': new EyeSetting(1, this.maps.uniforms.eye),
       'eye.R': new EyeSetting(-1, this.maps.uniforms.eye),
     };
-    dress(this.root, this.maps, this.eyes);
+    this.neckFade = neckFadeOf(this.root);
+    dress(this.root, this.maps, this.eyes, this.neckFade);
     const form = skinForm(
       {
         positions: surface.rest,
@@ -547,9 +550,13 @@ function eyeball(eye: NonNullable<SkinExtras['eyes']>[number]): Eyeball {
 }
 
 /** Give every mesh its material, its shadow and its place in the drawing order. */
-function dress(root: Object3D, maps: FaceMaps, eyes: Readonly<Record<string, EyeSetting>>): void {
+function dress(
+  root: Object3D,
+  maps: FaceMaps,
+  eyes: Readonly<Record<string, EyeSetting>>,
+  neckFade: readonly [number, number] | null,
+): void {
   root.updateMatrixWorld(true);
-  const neckFade = neckFadeOf(root);
   for (const mesh of meshes(root)) {
     const kind = (mesh.userData.material as string | undefined) ?? 'skin';
     const inMouth = (kind === 'wet' || kind === 'teeth') && isInMouth(mesh);

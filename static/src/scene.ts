@@ -39,8 +39,9 @@ const GLIDE_MS = 900;
 const TURNTABLE_SPEED = 12;
 /** A step of the turntable after a pause, as of a hidden page, is no longer than this [ms]. */
 const LONGEST_STEP_MS = 100;
-/** Height of the bar over the stage, whose half the head makes room for [CSS px]. */
-const BAR_HEIGHT = 40;
+/** Height of the bar over the stage, under which the head stands, and the least share that is left to the head [CSS px]. */
+const BAR_HEIGHT = 52;
+const LEAST_FREE = 0.85;
 
 /** A longer lens would flatten the face, a wider one spoils it [degrees]. */
 const FIELD_OF_VIEW = 22;
@@ -502,12 +503,20 @@ export class Scene {
     this.invalidate();
   }
 
+  /** Share of the stage's height that the bar leaves free. */
+  private shareUnderBar(): number {
+    const { clientHeight } = this.canvas;
+    if (!this.options.orbit || clientHeight === 0) return 1;
+    return Math.max(LEAST_FREE, 1 - BAR_HEIGHT / clientHeight);
+  }
+
   /** Stand where all of the view fits, whatever the window's shape. */
   private frame(): void {
     const angle = (this.angle * Math.PI) / 180;
     const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const { halfHeight, halfWidth } = this.shot;
-    const nearest = Math.max(halfHeight / slope, halfWidth / (slope * this.camera.aspect));
+    const upright = this.shareUnderBar() * slope;
+    const nearest = Math.max(halfHeight / upright, halfWidth / (slope * this.camera.aspect));
     // For a close-up one takes a longer lens, and does not hold the camera to the nose.
     const distance = Math.max(nearest, LEAST_DISTANCE);
     this.camera.fov = (360 / Math.PI) * Math.atan((slope * nearest) / distance);

@@ -8,6 +8,7 @@ import type { Level } from '../level';
 import { atLevel } from '../level';
 import type { Hello } from '../protocol';
 import type { Scene } from '../scene';
+import { sketch } from '../sketch';
 import type { Beside } from '../state/inside.svelte';
 import type { ViewerState } from '../state/viewer.svelte';
 import { withTicket } from '../ticket';
@@ -35,6 +36,8 @@ export class BesideOverlay implements Overlay {
   private moment: FacePose | null = null;
   private connection: Connection | null = null;
   private session = '';
+  /** Gives who came while faces were sketched their own materials. */
+  private uncoverOther: (() => void) | null = null;
   /** Counts what was asked for, so that what comes too late is left out. */
   private asked = 0;
 
@@ -97,6 +100,13 @@ export class BesideOverlay implements Overlay {
     return (frame !== null && this.other!.apply(frame)) || faded;
   }
 
+  uncovered(): void {
+    if (this.uncoverOther === null) return;
+    this.uncoverOther();
+    this.uncoverOther = null;
+    this.loadMaps(this.other!);
+  }
+
   private async showMoment(): Promise<void> {
     const loaded = await this.load(this.parts.address());
     if (loaded !== null && this.moment !== null) loaded.apply(this.moment);
@@ -143,10 +153,10 @@ export class BesideOverlay implements Overlay {
       this.other?.dispose();
       this.other = loaded;
       scene.add(loaded.root);
-      void loaded.loadMaps().then(() => {
-        scene.wake();
-      });
+      if (scene.plain) this.uncoverOther = sketch(loaded.root);
+      else this.loadMaps(loaded);
       scene.pair({ left: loaded.root, right: this.face?.root ?? null });
+      viewer.within.arrived = true;
       return loaded;
     } catch (error) {
       if (asked === this.asked) viewer.sayWhy(error);
@@ -154,13 +164,21 @@ export class BesideOverlay implements Overlay {
     }
   }
 
+  private loadMaps(face: Face): void {
+    void face.loadMaps().then(() => {
+      this.parts.scene.wake();
+    });
+  }
+
   private leave(): void {
     this.asked++;
+    this.uncoverOther = null;
     this.connection?.close();
     this.connection = null;
     if (this.session !== '') this.parts.api.closeSession(this.session).catch(() => undefined);
     this.session = '';
     this.other?.dispose();
     this.other = null;
+    this.parts.viewer.within.arrived = false;
   }
 }

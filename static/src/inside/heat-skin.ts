@@ -7,23 +7,29 @@ import {
   LinearFilter,
   ShaderMaterial,
   SRGBColorSpace,
+  Vector2,
 } from 'three';
 import { rampTexels } from './ramp';
 
 /** Who has a skin that can be drawn with another material; `paint` returns the one that it had. */
 export interface Painted {
   readonly skin: Mesh;
+  /** Heights between which the neck fades into the ground [mm]; null where there is no cut to hide. */
+  readonly neckFade: readonly [number, number] | null;
   paint(material: Material | Material[]): Material | Material[];
 }
 
 const TEXELS = 256;
+/** A fade that never begins [mm]. */
+const NO_FADE = [-2000, -1999] as const;
 
 export class HeatSkin {
-  private readonly material = createMap();
+  private readonly material: ShaderMaterial;
   private readonly own: Material | Material[];
 
   /** @param face its skin is drawn as a map until this is disposed of. */
   constructor(private readonly face: Painted) {
+    this.material = createMap(face.neckFade);
     const { geometry } = face.skin;
     const count = geometry.getAttribute('position').count;
     geometry.setAttribute('heat', new Float32BufferAttribute(new Float32Array(count), 1));
@@ -45,21 +51,28 @@ export class HeatSkin {
   }
 }
 
-function createMap(): ShaderMaterial {
+function createMap(neckFade: Painted['neckFade']): ShaderMaterial {
   const ramp = new DataTexture(rampTexels(TEXELS), TEXELS, 1);
   ramp.colorSpace = SRGBColorSpace;
   ramp.magFilter = ramp.minFilter = LinearFilter;
   ramp.needsUpdate = true;
   return new ShaderMaterial({
-    uniforms: { ramp: { value: ramp } },
+    uniforms: {
+      ramp: { value: ramp },
+      neckFade: { value: new Vector2(...(neckFade ?? NO_FADE)) },
+    },
+    transparent: neckFade !== null,
     clipping: true,
     vertexShader: /* glsl */ `
       attribute float heat;
+      attribute vec3 restPosition;
       varying float vHeat;
+      varying float vHeight;
       varying vec3 vNormal;
       #include <clipping_planes_pars_vertex>
       void main() {
         vHeat = heat;
+        vHeight = 1000.0 * restPosition.y;
         vNormal = normalize(normalMatrix * normal);
         vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
         gl_Position = projectionMatrix * mvPosition;
@@ -67,7 +80,9 @@ function createMap(): ShaderMaterial {
       }`,
     fragmentShader: /* glsl */ `
       uniform sampler2D ramp;
+      uniform vec2 neckFade;
       varying float vHeat;
+      varying float vHeight;
       varying vec3 vNormal;
       #include <clipping_planes_pars_fragment>
       void main() {
@@ -75,7 +90,7 @@ function createMap(): ShaderMaterial {
         vec3 color = texture2D(ramp, vec2(clamp(vHeat, 0.0, 1.0), 0.5)).rgb;
         float light = max(0.0, dot(normalize(vNormal), normalize(vec3(-0.3, 0.45, 0.85))));
         // Dark colours get a little of the light as such, or form would be lost where nothing is strained.
-        gl_FragColor = vec4(color * (0.62 + 0.5 * light) + 0.035 * light, 1.0);
+        gl_FragColor = vec4(color * (0.62 + 0.5 * light) + 0.035 * light, smoothstep(neckFade.x, neckFade.y, vHeight));
         #include <colorspace_fragment>
       }`,
   });

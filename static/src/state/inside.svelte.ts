@@ -45,6 +45,8 @@ export class InsideState {
   seconds = $state(4);
   span = $state(0);
   beside = $state<Beside>('off');
+  /** Who was asked to stand beside the face does. */
+  arrived = $state(false);
   /** A moment is held. */
   held = $state(false);
   /** Forms of all muscles that have one, with what was changed here. */

@@ -246,6 +246,12 @@ export function readable(name: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
+/** The same, with the side that a paired one is of. */
+export function sided(name: string): string {
+  const side = { L: ', left', R: ', right' }[/\.([LR])$/.exec(name)?.[1] ?? ''] ?? '';
+  return readable(name) + side;
+}
+
 /** FACS letter of an intensity: A to E in fifths, nothing at rest. */
 export function intensityLetter(value: number): string {
   return value < 0.005
