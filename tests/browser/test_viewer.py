@@ -21,6 +21,8 @@ from service.starting import service
 
 pytestmark = pytest.mark.browser
 START_SECONDS = 300.0
+SKETCH = "?draw=sketch"
+"""Of a page whose picture is not looked at."""
 CORNERS = ("ch.L", "ch.R")
 
 
@@ -40,7 +42,7 @@ def switch_off_idle_life(page: playwright_api.Page, url: str) -> None:
 def test_a_face_lives_and_a_slider_lifts_the_streamed_and_the_drawn_mouth_corners(
     page: playwright_api.Page, url: str
 ) -> None:
-    page.goto(url)
+    page.goto(f"{url}/{SKETCH}")
     switch_off_idle_life(page, url)
     tick = settle(page)
     assert page.evaluate("() => window.__viewer.connected && window.__viewer.framesDrawn > 0")
@@ -59,7 +61,7 @@ def test_a_face_lives_and_a_slider_lifts_the_streamed_and_the_drawn_mouth_corner
 
 def test_another_client_s_command_is_drawn_too(page: playwright_api.Page, url: str) -> None:
     session = page.request.post(f"{url}/api/sessions", data={}).json()["id"]
-    page.goto(f"{url}/?session={session}&bare=1&view=three-quarter")
+    page.goto(f"{url}/{SKETCH}&session={session}&bare=1&view=three-quarter")
     tick = settle(page)
     rest = height(page, "ch.L")
     answer = page.request.post(f"{url}/api/sessions/{session}/emotions", data={"label": "joy"})
@@ -76,7 +78,7 @@ def test_a_visitor_reads_what_is_being_done(page: playwright_api.Page, url: str)
           if (words && !window.__said.includes(words)) window.__said.push(words);
         }).observe(document, {subtree: true, childList: true, characterData: true});"""
     )
-    page.goto(f"{url}/?idle=0")
+    page.goto(f"{url}/{SKETCH}&idle=0")
     settle(page)
     said = page.evaluate("() => window.__said")
     assert said[0].startswith(("Connecting", "Preparing"))
@@ -88,16 +90,15 @@ def test_a_visitor_reads_what_a_starting_service_is_at(page: playwright_api.Page
     starting = {"error": "not_ready", "message": "the service is compiling the simulation"}
     page.route("**/api/ready", lambda route: route.fulfill(status=503, json=starting))
     page.route("**/api/sessions", lambda _: None)  # A first session waits for the first rig.
-    page.goto(f"{url}/?idle=0")
+    page.goto(f"{url}/{SKETCH}&idle=0")
     said = page.locator("#curtain span")
     playwright_api.expect(said).to_have_text("The service is starting: compiling the simulation")
     page.unroute_all(behavior="ignoreErrors")
 
 
 def test_a_session_that_was_closed_is_opened_anew(page: playwright_api.Page, url: str) -> None:
-    page.goto(f"{url}/?idle=0")
+    page.goto(f"{url}/{SKETCH}&idle=0")
     settle(page)
-    page.wait_for_function("() => window.__viewer.textured")
     session = page.evaluate("() => window.__viewer.session")
     page.request.delete(f"{url}/api/sessions/{session}")
     page.wait_for_function("id => window.__viewer.session !== id", arg=session)
@@ -105,7 +106,7 @@ def test_a_session_that_was_closed_is_opened_anew(page: playwright_api.Page, url
 
 
 def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> None:
-    page.goto(f"{url}/?idle=0")
+    page.goto(f"{url}/{SKETCH}&idle=0")
     settle(page)
     page.get_by_role("button", name="Sean").wait_for()
     for wide, high in ((1280, 800), (1600, 1000)):
@@ -128,7 +129,7 @@ def test_everybody_fits_under_the_stage(page: playwright_api.Page, url: str) -> 
 
 def test_panels_show_what_an_emotion_plays(page: playwright_api.Page, url: str) -> None:
     page.set_viewport_size({"width": 1000, "height": 700})
-    page.goto(f"{url}/?idle=0&dpr=0.5")
+    page.goto(f"{url}/{SKETCH}&idle=0&dpr=0.5")
     tick = settle(page)
     page.get_by_role("button", name="Contempt").click()
     settle(page, tick)
@@ -225,7 +226,7 @@ def test_a_link_shows_its_face_and_a_key_opens_the_page(
         assert page.evaluate("() => window.__viewer.session") == session
         assert refused == []
         playwright_api.expect(page.locator("body")).to_have_class(re.compile("watching"))
-        page.goto(f"{url}/?level=low&dpr=0.25")
+        page.goto(f"{url}/{SKETCH}&level=low&dpr=0.25")
         page.get_by_label("This service asks for a key.").fill("a-key")
         page.locator("#curtain").get_by_role("button", name="Open").click()
         page.wait_for_function("() => window.__viewer.connected")
@@ -237,7 +238,7 @@ def test_a_viewer_comes_back_to_its_face_when_the_service_was_killed(
 ) -> None:
     folder = {"RISORIUS_DATA_DIR": str(tmp_path)}
     with service(folder) as started:
-        page.goto(f"{started.url}?bare=1")
+        page.goto(f"{started.url}{SKETCH}&bare=1")
         rest = settle(page)
         session = page.evaluate("() => window.__viewer.session")
         before = [height(page, corner) for corner in CORNERS]
