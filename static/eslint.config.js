@@ -16,6 +16,8 @@ const NETWORK = {
     '**/api.ts',
     '**/protocol',
     '**/protocol.ts',
+    '**/surface-frame',
+    '**/surface-frame.ts',
   ],
   message: 'Drawing files know no network: app/ hands them plain data.',
 };
@@ -24,7 +26,18 @@ const SOCKETS = {
   message: 'Panels and state act through the Actions that app/ gives them.',
 };
 const DRAWING = {
-  group: ['**/face', '**/face.ts', '**/scene', '**/scene.ts', '**/materials', '**/materials.ts'],
+  group: [
+    '**/face',
+    '**/face.ts',
+    '**/scene',
+    '**/scene.ts',
+    '**/viewpoint',
+    '**/viewpoint.ts',
+    '**/sight',
+    '**/sight.ts',
+    '**/materials',
+    '**/materials.ts',
+  ],
   message: 'Only app/ knows both the drawing and the rest.',
 };
 const MAIN = { group: ['**/main', '**/main.ts'], message: 'main.ts is imported by nobody.' };
@@ -57,6 +70,7 @@ export default ts.config(
   {
     files: [
       'src/protocol.ts',
+      'src/surface-frame.ts',
       'src/connection.ts',
       'src/api.ts',
       'src/throttle.ts',
@@ -81,13 +95,22 @@ export default ts.config(
       'src/skin-form.ts',
       'src/wrinkles.ts',
       'src/muscle-shape.ts',
+      'src/draped.ts',
+      'src/pose.ts',
     ],
     rules: forbid(THREE, NETWORK, PANELS),
   },
   {
     files: [
       'src/face.ts',
+      'src/surface-file.ts',
+      'src/dressing.ts',
+      'src/face-eyes.ts',
+      'src/face-nodes.ts',
+      'src/gltf-nodes.ts',
       'src/scene.ts',
+      'src/sight.ts',
+      'src/viewpoint.ts',
       'src/materials.ts',
       'src/lights.ts',
       'src/skin-shader.ts',

@@ -1,6 +1,7 @@
 // Keeps one WebSocket to a face alive: finds it, reconnects with growing pauses, hands on the newest frame.
 
-import type { Hello, StateMessage, SurfaceFrame, ErrorMessage, WarningMessage } from './protocol';
+import type { Hello, StateMessage, ErrorMessage, WarningMessage } from './protocol';
+import type { SurfaceFrame } from './surface-frame';
 import { FrameReader, PACKED_QUERY, standsAlone } from './packed';
 import { ackCommand, readMessage, SUBPROTOCOL } from './protocol';
 

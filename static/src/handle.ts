@@ -1,6 +1,6 @@
 // window.__viewer: what browser tests, contact sheets and curious visitors may read and do.
 
-import type { Triple } from './face';
+import type { Triple } from './pose';
 import type { Ground } from './lights';
 
 export interface ViewerHandle {

@@ -181,7 +181,7 @@ const actions: Actions = {
   reset() {
     commands.reset();
     viewer.say('');
-    scene.glideTo(viewer.view);
+    scene.viewpoint.glideTo(viewer.view);
   },
   reconnect: () => {
     connection.connect();

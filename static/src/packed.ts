@@ -1,8 +1,8 @@
 // Reads every kind of frame in the order in which they come: packed ones say what changed. Mirrors service/packed.py.
 
 import { inflate, InflateError } from './inflate';
-import type { SurfaceFrame } from './protocol';
-import { decodeFrame, decodeHead, HEAD_BYTES, ProtocolError } from './protocol';
+import type { SurfaceFrame } from './surface-frame';
+import { decodeFrame, decodeHead, HEAD_BYTES, ProtocolError } from './surface-frame';
 
 const KIND_PACKED = 2;
 const VERSION = 1;

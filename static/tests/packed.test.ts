@@ -5,7 +5,7 @@ import { constants, deflateRawSync } from 'node:zlib';
 import { describe, expect, it } from 'vitest';
 import { inflate, InflateError } from '../src/inflate';
 import { FrameReader, standsAlone } from '../src/packed';
-import { ProtocolError } from '../src/protocol';
+import { ProtocolError } from '../src/surface-frame';
 
 function golden(name: string): ArrayBuffer {
   const url = new URL(`../../tests/golden/frames/${name}.bin`, import.meta.url);

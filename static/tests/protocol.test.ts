@@ -6,13 +6,12 @@ import { describe, expect, it } from 'vitest';
 import { FrameReader } from '../src/packed';
 import {
   controlsCommand,
-  decodeFrame,
   emotionCommand,
   expressionOf,
-  ProtocolError,
   readMessage,
   replaceCommand,
 } from '../src/protocol';
+import { decodeFrame, ProtocolError } from '../src/surface-frame';
 
 const FRAMES = fileURLToPath(new URL('../../tests/golden/frames/', import.meta.url));
 const GRID = 2e-5;

@@ -3,7 +3,7 @@
 import type { Api } from '../api';
 import { Connection } from '../connection';
 import { Face } from '../face';
-import type { FacePose } from '../face';
+import type { FacePose } from '../pose';
 import type { Level } from '../level';
 import { atLevel } from '../level';
 import type { Hello } from '../protocol';

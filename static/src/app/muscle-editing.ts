@@ -153,7 +153,7 @@ export class MuscleEditing implements Overlay {
     const { view } = this;
     if (view === null) return {};
     const place = ({ id, drawn }: CarriedHandle) =>
-      [id, this.parts.scene.screenPlace(view.world(drawn))] as const;
+      [id, this.parts.scene.sight.screenPlace(view.world(drawn))] as const;
     return Object.fromEntries(view.handles.map(place));
   }
 
@@ -161,7 +161,7 @@ export class MuscleEditing implements Overlay {
   handleAt(x: number, y: number, reach: number): CarriedHandle | null {
     let [found, least]: [CarriedHandle | null, number] = [null, reach];
     for (const handle of this.view?.handles ?? []) {
-      const at = this.parts.scene.screenPlace(this.view!.world(handle.drawn));
+      const at = this.parts.scene.sight.screenPlace(this.view!.world(handle.drawn));
       const away = Math.hypot(at.x - x, at.y - y);
       if (away < least) [found, least] = [handle, away];
     }
@@ -176,9 +176,9 @@ export class MuscleEditing implements Overlay {
     for (const form of Object.values(viewer.within.forms)) {
       for (const fibre of fibresOn(form, this.ground)) {
         for (const point of carriedFibre(fibre, this.shift)) {
-          const at = scene.screenPlace(this.view!.world(point));
+          const at = scene.sight.screenPlace(this.view!.world(point));
           const away = Math.hypot(at.x - x, at.y - y);
-          if (away < least && scene.facing(this.view!.world(point)))
+          if (away < least && scene.sight.facing(this.view!.world(point)))
             [found, least] = [form.name, away];
         }
       }
@@ -198,7 +198,7 @@ export class MuscleEditing implements Overlay {
     const form = within.forms[within.muscle];
     if (form === undefined) return;
     if (handle.along === 'line' || handle.along === 'arc') {
-      const ray = this.parts.scene.rayIn(this.view!.group, x, y);
+      const ray = this.parts.scene.sight.rayIn(this.view!.group, x, y);
       this.edit(ledAsCarried(form, handle.id, ray, this.shift), handle.id);
       return;
     }
@@ -210,16 +210,16 @@ export class MuscleEditing implements Overlay {
   private touched(handle: CarriedHandle, x: number, y: number): Point | null {
     const { scene, layers } = this.parts;
     if (handle.along === 'skin') {
-      const hit = scene.hit(this.face!.skin, x, y);
+      const hit = scene.sight.hit(this.face!.skin, x, y);
       if (hit !== null) return this.face!.restOf(hit.corners, hit.weights);
     }
     const skull = handle.along === 'bone' ? layers.skull : null;
     if (skull !== null) {
-      const hit = scene.hit(skull, x, y);
+      const hit = scene.sight.hit(skull, x, y);
       if (hit !== null) return hit.place;
     }
     // Beside the head, or before its layers are there: along the picture, through where it is drawn.
-    const ray = scene.rayIn(this.view!.group, x, y);
+    const ray = scene.sight.rayIn(this.view!.group, x, y);
     const hit = onPlane(ray, handle.drawn, ray.direction);
     return hit === null ? null : plus(hit, minus(handle.place, handle.drawn));
   }

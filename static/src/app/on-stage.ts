@@ -1,7 +1,7 @@
 // The face on the stage: loaded, drawn as the frames come, and what lies over it.
 
 import { Face } from '../face';
-import type { SurfaceFrame } from '../protocol';
+import type { SurfaceFrame } from '../surface-frame';
 import type { Level } from '../level';
 import { levelFor } from '../level';
 import { mark } from '../marks';
@@ -101,7 +101,7 @@ export class OnStage {
     mark('surface');
     this.uncover = this.scene.plain ? sketch(loaded.root) : null;
     this.scene.add(loaded.root);
-    this.scene.reframe();
+    this.scene.viewpoint.reframe();
     viewer.surfaceReady = true;
     viewer.regions = [...loaded.regionNames].sort();
     viewer.step = null;
@@ -110,7 +110,7 @@ export class OnStage {
     await this.scene.rendered();
     await this.scene.done();
     mark('first-frame');
-    if (!page.bare && !curtain.isOpen && this.uncover === null) this.scene.enter();
+    if (!page.bare && !curtain.isOpen && this.uncover === null) this.scene.viewpoint.enter();
     curtain.open();
   }
 

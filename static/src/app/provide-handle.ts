@@ -47,7 +47,7 @@ export function provideHandle(
     point: (which) => stage.shown.point(which),
     drawnVertex: (index) => stage.shown.drawnVertex(index),
     setView: (view) => {
-      scene.setView(view);
+      scene.viewpoint.setView(view);
     },
     setGround: (ground) => {
       scene.setGround(ground);

@@ -40,7 +40,7 @@ export function stageActions(
     copy,
     setView(view) {
       viewer.view = view;
-      scene.glideTo(view);
+      scene.viewpoint.glideTo(view);
     },
     setLight(light) {
       viewer.light = light;
@@ -55,7 +55,7 @@ export function stageActions(
       muscles.refresh();
     },
     setTurning: (turning) => {
-      scene.setTurning(turning);
+      scene.viewpoint.setTurning(turning);
     },
     savePicture() {
       scene
