@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from .balance import balanced_space
 from .error import Check, Motion, fewest_shapes, frame_errors, parts_of
 from .packing import GREATEST_STEP, WEIGHT_STEPS
 from .positive import positive
+from .spared import spared
 
 SNAPSHOT_COUNT = 300
 """Frames that a basis is first made from; more are added only where those do not suffice."""
@@ -18,9 +20,11 @@ SAMPLE_COUNT = 1000
 """About as many vertices say which shapes are needed; the rest move much like their neighbours."""
 SPARE_SHAPES = 16
 """Shapes that are looked at beside twice as many as a sample of the vertices needs."""
-DROPPED, LEAST_DROPPED = 0.08, 1e-3
-"""Deltas below this share of the tolerance are dropped from a shape; the second where the first
-leaves too large an error, which it may when shapes are many."""
+SPENT = (0.92, 0.85, 0.7)
+"""Shares of the tolerance that vertices are spared shapes for; the next where rounding, which comes
+after, takes more than is left."""
+SPENT_UNSEEN = (0.5,)
+"""The same where not all frames are looked at: more would have many of the others missed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +44,11 @@ class MotionBasis:
 
 @dataclass(frozen=True)
 class _Fineness:
-    """Largest error allowed, step of the grid (0 for none) and least delta that is kept, mm."""
+    """Largest error allowed and step of the grid (0 for none), mm; whether zeros take no room."""
 
     tolerance: float
     step: float
-    least: float
+    sparse: bool
 
 
 def fit_basis(
@@ -52,7 +56,7 @@ def fit_basis(
     *,
     tolerance: float,
     step: float = 0.0,
-    dropped: float = LEAST_DROPPED,
+    sparse: bool = True,
     check: Check | None = None,
 ) -> MotionBasis:
     """Return few principal shapes that reproduce `motion` to `tolerance`.
@@ -69,10 +73,10 @@ def fit_basis(
         step: Of the grid that shapes are stored on [mm], and weights on one of their own; 0 for
             none. On a coarse one there may be an error beyond the tolerance: what is stated counts.
             It is infinite where a move does not fit on the grid.
-        dropped: Deltas below this share of the tolerance are dropped.
+        sparse: Whether a shape is to have zeros for the vertices that do without (`spared`).
         check: Called now and then; raises to stop.
     """
-    fine = _Fineness(tolerance, step, dropped * tolerance)
+    fine = _Fineness(tolerance, step, sparse)
     chosen = np.unique(np.linspace(0, len(motion) - 1, SNAPSHOT_COUNT).round().astype(np.int64))
     spare = SPARE_SHAPES
     while True:
@@ -109,18 +113,41 @@ def _fit_to(
     tried = _rounded(*_peaked(shapes, own), fine)
     count, _ = fewest_shapes(frames, *tried, fine.tolerance, start=space.count, check=check)
     while True:
-        kept = _rounded(*positive(shapes[:count], weights[:, :count]), fine)
-        errors = frame_errors(frames, kept[0], kept[1][chosen], check=check)
+        for kept in _kept(frames, shapes[:count], weights[:, :count], own[:, :count], fine):
+            errors = frame_errors(frames, kept[0], kept[1][chosen], fine.tolerance, check=check)
+            if errors.max() <= fine.tolerance:
+                break
         # Turned positive, the shapes are rounded otherwise than those that were counted.
         if errors.max() <= fine.tolerance or count == most:
             break
         count += 1
+    if len(errors) < len(frames):
+        errors = frame_errors(frames, kept[0], kept[1][chosen], check=check)
     if len(chosen) < len(motion):
         errors = frame_errors(motion, *kept, check=check)
     if fine.step and np.abs(kept[0]).max(initial=0.0) > GREATEST_STEP * fine.step:
         errors = np.full(len(errors), np.inf)
     points = kept[0].reshape(len(kept[0]), -1, 3)
     return MotionBasis(points, kept[1], float(errors.max())), errors
+
+
+def _kept(
+    frames: Float32Array, shapes: FloatArray, weights: FloatArray, own: FloatArray, fine: _Fineness
+) -> Iterator[tuple[Float32Array, Float32Array]]:
+    """Yield shapes and weights from 0 to 1 as they are written, the ones with most zeros first.
+
+    Args:
+        frames: Those that the shapes were made from [mm], shape (n, v, 3).
+        shapes: Pulling both ways [mm], shape (k, 3 v).
+        weights: Of all frames, shape (f, k).
+        own: Of those that the shapes were made from, shape (n, k).
+        fine: What they are to keep to.
+    """
+    shares = SPENT if len(own) == len(weights) else SPENT_UNSEEN
+    for share in shares if fine.sparse else ():
+        fewer = spared(frames, shapes, own, share * fine.tolerance)
+        yield _rounded(*positive(fewer, weights), fine)
+    yield _rounded(*positive(shapes, weights), fine)
 
 
 def _peaked(shapes: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -139,6 +166,4 @@ def _rounded(
     if fine.step:
         points = np.round(points / fine.step) * fine.step
         weights = np.round(weights * WEIGHT_STEPS) / WEIGHT_STEPS
-    small = (np.abs(points) < fine.least).all(axis=2, keepdims=True)
-    points = np.where(small, 0.0, points)
     return points.reshape(shapes.shape).astype(np.float32), weights.astype(np.float32)

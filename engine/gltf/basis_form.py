@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import Float32Array, IntArray
 from ..clip import Clip
 from .accessors import metres
-from .basis import DROPPED, LEAST_DROPPED, MotionBasis, fit_basis
+from .basis import MotionBasis, fit_basis
 from .builder import Channel, GlbBuilder
 from .drawn import DrawnFace
 from .error import Check, Motion
@@ -128,7 +128,9 @@ def _fitted_by(areas: list[IntArray], piece: Piece, packing: Packing, check: Che
     for own in (grid, Grid()):
         # What is left of the tolerance where the places at rest are rounded, too.
         tolerance = packing.tolerance - own.error * 1e3 - ROUNDING
-        regions = [_region(piece.motion, area, own, tolerance, check) for area in areas]
+        regions = [
+            _region(piece.motion, area, own, tolerance, packing.sparse, check) for area in areas
+        ]
         error = max(region.basis.max_error for region in regions)
         if error <= tolerance:
             break
@@ -137,18 +139,20 @@ def _fitted_by(areas: list[IntArray], piece: Piece, packing: Packing, check: Che
 
 
 def _region(
-    motion: Motion, vertices: IntArray, grid: Grid, tolerance: float, check: Check
+    motion: Motion,
+    vertices: IntArray,
+    grid: Grid,
+    tolerance: float,
+    sparse: bool,
+    check: Check,
 ) -> _Region:
-    for dropped in (DROPPED, LEAST_DROPPED):
-        basis = fit_basis(
-            _Some(motion, vertices),
-            tolerance=tolerance,
-            step=grid.step * 1e3,
-            dropped=dropped,
-            check=check,
-        )
-        if basis.max_error <= tolerance:
-            break
+    basis = fit_basis(
+        _Some(motion, vertices),
+        tolerance=tolerance,
+        step=grid.step * 1e3,
+        sparse=sparse,
+        check=check,
+    )
     return _Region(vertices, basis)
 
 
