@@ -34,11 +34,13 @@ class MotionBasis:
     Attributes:
         shapes: Displacements [mm] at weight 1, shape (k, v, 3).
         weights: Of each shape in each frame, 0 to 1, shape (f, k).
+        pulls: Weights before `positive` made those of them, shape (f, k or k - 1).
         max_error: Largest distance of any vertex in any frame from where it should be [mm].
     """
 
     shapes: Float32Array
     weights: Float32Array
+    pulls: FloatArray
     max_error: float
 
 
@@ -128,7 +130,7 @@ def _fit_to(
     if fine.step and np.abs(kept[0]).max(initial=0.0) > GREATEST_STEP * fine.step:
         errors = np.full(len(errors), np.inf)
     points = kept[0].reshape(len(kept[0]), -1, 3)
-    return MotionBasis(points, kept[1], float(errors.max())), errors
+    return MotionBasis(points, kept[1], weights[:, :count], float(errors.max())), errors
 
 
 def _kept(

@@ -17,12 +17,19 @@ from .error import Check, Motion
 from .form import ROUNDING, Fit, promised
 from .motion import ClipMotion, Piece
 from .packing import Grid, Packing
+from .positive import positive
 from .regions import regions_of
 from .scene import Pivot
 from .skin import add_piece
+from .spared import spared
 
 NORMAL_FRAMES = 150
 """Frames that the shapes' normals are fitted to."""
+DAMPING = 1e-4
+"""Of the fit of normals, as a share of all weights' squares."""
+TURN_ERROR = 0.05
+"""By how much a normal of length one may be off in any of those frames for being spared shapes:
+three degrees, which are not seen on skin in motion. Few fits are nearer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +88,7 @@ def fit_shapes(clip: Clip, motion: ClipMotion, packing: Packing, check: Check) -
     counts = {each.piece.name: each.count for each in fitted}
     error = max(each.max_error for each in fitted)
     told = {"basis": counts["skin"], "shapes": counts, "max_error_mm": promised(error)}
-    turns = _turns(motion, fitted[0])
+    turns = _turns(motion, fitted[0], packing.sparse)
 
     def add(builder: GlbBuilder, face: DrawnFace, pivots: Mapping[str, Pivot]) -> list[Channel]:
         channels = []
@@ -96,6 +103,7 @@ def fit_shapes(clip: Clip, motion: ClipMotion, packing: Packing, check: Check) -
                 moves=list(own.shapes()),
                 turns=turns if skin else (),
                 smallest=0.0,
+                smallest_turn=0.0,
                 grid=own.grid,
                 rows=own.rows(),
             )
@@ -170,7 +178,7 @@ class _Some:
         return np.ascontiguousarray(self._motion[frames][:, self._vertices])
 
 
-def _turns(motion: ClipMotion, fitted: _Fitted) -> list[Float32Array]:
+def _turns(motion: ClipMotion, fitted: _Fitted, sparse: bool) -> list[Float32Array]:
     """Return the change of the skin's normals that best goes with each shape, shape (d, 3) each.
 
     Normals are not linear in the positions, so this is a least-squares fit over the frames.
@@ -180,12 +188,17 @@ def _turns(motion: ClipMotion, fitted: _Fitted) -> list[Float32Array]:
     changes = motion.drawer.turns(motion.displacements[chosen])
     turns = []
     for region in fitted.regions:
-        weights = region.basis.weights[chosen].astype(np.float64)
+        pulls = region.basis.pulls[chosen]
         # A little damping: shapes that none of these frames uses get no normals instead of noise.
-        squares = weights.T @ weights + 1e-3 * np.eye(weights.shape[1])
-        onto = np.linalg.solve(squares, weights.T).astype(np.float32)
-        wanted = changes[:, region.vertices].reshape(len(chosen), -1)
-        for turn in (onto @ wanted).reshape(len(onto), -1, 3):
+        squares = pulls.T @ pulls
+        squares += DAMPING * max(np.trace(squares), 1e-12) * np.eye(len(squares))
+        wanted = np.ascontiguousarray(changes[:, region.vertices])
+        own = np.linalg.solve(squares, pulls.T) @ wanted.reshape(len(chosen), -1)
+        if sparse:
+            own = spared(wanted, own, pulls, TURN_ERROR)
+        # Both ways at first, as the shapes were, for then most of a shape's normals are small.
+        onto, _ = positive(np.eye(len(own)), region.basis.pulls)
+        for turn in (onto @ own).astype(np.float32).reshape(len(onto), -1, 3):
             turns.append(_spread(turn, region.vertices, changes.shape[1]))
     return turns
 

@@ -82,6 +82,7 @@ def add_piece(
     moves: Sequence[npt.NDArray[np.floating]],
     turns: Sequence[npt.NDArray[np.floating]],
     smallest: float,
+    smallest_turn: float | None = None,
     grid: Grid | None = None,
     rows: Sequence[IntArray] | None = None,
 ) -> int:
@@ -96,6 +97,7 @@ def add_piece(
         moves: Displacement [mm] per target, shape (v, 3) each.
         turns: Change of the normals per target, shape (v, 3) each; none for strands.
         smallest: Moves below this are taken as none [mm].
+        smallest_turn: Normals that change by less are taken as still; as `add_targets` has it.
         grid: Where its vertices are stored, if not on the grid of the file's packing.
         rows: Vertices among which each target moves any, if not all of them.
     """
@@ -114,7 +116,14 @@ def add_piece(
         attributes,
         triangles,
         material=look,
-        targets=add_targets(builder, targets, smallest=smallest, grid=grid, rows=rows),
+        targets=add_targets(
+            builder,
+            targets,
+            smallest=smallest,
+            smallest_turn=smallest_turn,
+            grid=grid,
+            rows=rows,
+        ),
         grid=grid,
     )
     return builder.node(

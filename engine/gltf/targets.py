@@ -25,6 +25,7 @@ def add_targets(
     targets: Sequence[Target],
     *,
     smallest: float,
+    smallest_turn: float | None = None,
     grid: Grid | None = None,
     rows: Sequence[IntArray] | None = None,
 ) -> list[dict[str, int]]:
@@ -34,9 +35,14 @@ def add_targets(
         builder: The file.
         targets: What to store.
         smallest: Moves below this are taken as none [mm].
+        smallest_turn: Normals that change by less are taken as still; by a third of a degree, or by
+            one where they are stored in 8 bits, if None.
         grid: Of their mesh.
         rows: Vertices among which each moves any; all of them, where None.
     """
+    if smallest_turn is None:
+        quantized = builder.packing.quantize
+        smallest_turn = SMALLEST_TURN_ON_GRID if quantized else SMALLEST_TURN
     stored = []
     for number, target in enumerate(targets):
         within = None if rows is None else rows[number]
@@ -49,8 +55,6 @@ def add_targets(
             )
         }
         if "NORMAL" in target:
-            quantized = builder.packing.quantize
-            least = SMALLEST_TURN_ON_GRID if quantized else SMALLEST_TURN
-            kept["NORMAL"] = builder.turns(target["NORMAL"], smallest=least, within=within)
+            kept["NORMAL"] = builder.turns(target["NORMAL"], smallest=smallest_turn, within=within)
         stored.append(kept)
     return stored
