@@ -1,9 +1,13 @@
-"""Processes that run the service's own code beside it."""
+"""Processes that run the service's own code beside it.
+
+Run as a program, with the name of a module, this has that module end with its owner.
+"""
 
 from __future__ import annotations
 
 import ctypes
 import os
+import runpy
 import signal
 import sys
 from contextlib import suppress
@@ -21,14 +25,38 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": path}
 
 
+def bound(module: str) -> tuple[str, ...]:
+    """Return the command that runs a module of this package for as long as its owner is there.
+
+    On Linux it is killed when the thread ends that started it, also where it is held
+    (`bystanders.py`) and cannot see its input end; from before it reads in any library, for it may
+    be held from then on.
+    """
+    return sys.executable, "-m", f"{__package__}.apart", module
+
+
 def orders_and_answers() -> tuple[BinaryIO, BinaryIO]:
     """Return standard input and output of this process as binary files, for their owner alone.
 
-    What else is printed here goes to standard error, which is the service's. On Linux this process
-    ends with its owner, also where it is held (`bystanders.py`) and cannot see its input end.
+    What else is printed here goes to standard error, which is the service's.
     """
-    with suppress(OSError, AttributeError):
-        ctypes.CDLL(None).prctl(_SIGNAL_OF_DEATH, signal.SIGKILL, 0, 0, 0)
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     return sys.stdin.buffer, answers
+
+
+def _end_with_owner() -> None:
+    if sys.platform == "linux":
+        with suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(_SIGNAL_OF_DEATH, signal.SIGKILL, 0, 0, 0)
+
+
+def main() -> None:
+    """Be the module that is named, with the arguments that come after it."""
+    _end_with_owner()
+    del sys.argv[0]
+    runpy.run_module(f"{__package__}.{sys.argv[0]}", run_name="__main__", alter_sys=True)
+
+
+if __name__ == "__main__":
+    main()

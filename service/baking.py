@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import pickle
 import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 from engine import Cancelled, Rig
 
-from .apart import environment
+from .apart import bound, environment
 from .bystanders import Bystanders
 
-_MODULE = f"{__package__}.bake_process"
+_MODULE = "bake_process"
 _LOOK_SECONDS = 0.1
 
 
@@ -36,7 +35,7 @@ def baked_apart(
     """
     with (
         subprocess.Popen(
-            [sys.executable, "-m", _MODULE],
+            bound(_MODULE),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=environment(),

@@ -17,7 +17,8 @@ from contextlib import suppress
 _LEAST_SHARE = 0.05
 """Of the time, that whoever is held runs all the same: what somebody waits for has to end."""
 _OWED_SECONDS = 0.05
-"""Of that share, after which a tick is stepped beside them: once a second where no gap is left."""
+"""Of that share, after which a tick is stepped beside them: where no gap is left that is after a
+second, and then three times a second."""
 
 
 class Bystanders:

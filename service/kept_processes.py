@@ -7,13 +7,15 @@ import sys
 from asyncio.subprocess import PIPE, Process
 from contextlib import suppress
 
-from .apart import environment
+from .apart import bound, environment
 from .bystanders import Bystanders
 
 _KEPT_SECONDS = 60.0
 """For which a process waits for its next order: it takes a second or more to start, and 150 MB."""
 _BUFFER_BYTES = 2**16
 """Bytes of an answer that are read ahead, as asyncio has it."""
+_ENDING_SECONDS = 5.0
+"""That a process has to put away what it opened: a browser, a folder."""
 
 
 class KeptProcesses:
@@ -31,10 +33,12 @@ class KeptProcesses:
         Args:
             module: Of this package, run by its name.
             arguments: It is run with.
-            bystanders: Where they are while they have an order.
+            bystanders: Where they are while they have an order; without any they are never held,
+                and may end after their owner.
             longest_line: Bytes of the longest line that it answers with.
         """
-        self._command = (sys.executable, "-m", f"{__package__}.{module}", *arguments)
+        alone = sys.executable, "-m", f"{__package__}.{module}"
+        self._command = (*(alone if bystanders is None else bound(module)), *arguments)
         self._bystanders = bystanders or Bystanders()
         self._longest_line = longest_line
         self._idle: dict[Process, asyncio.TimerHandle] = {}
@@ -82,9 +86,17 @@ class KeptProcesses:
         await process.wait()
 
     async def stop(self) -> None:
-        """End those that wait."""
-        for process in list(self._idle):
-            self._idle.pop(process).cancel()
+        """Let go of those that wait, until they have ended."""
+        waiting = self._idle.copy()
+        for process, timer in waiting.items():
+            timer.cancel()
+            self._let_go(process)
+        await asyncio.gather(*map(self._ended, waiting))
+
+    async def _ended(self, process: Process) -> None:
+        try:
+            await asyncio.wait_for(process.wait(), _ENDING_SECONDS)
+        except TimeoutError:
             await self.end(process)
 
     def _let_go(self, process: Process) -> None:

@@ -10,7 +10,7 @@ from service.baking import baked_apart
 
 
 def test_a_process_that_ends_by_itself_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.baking._MODULE", "service.no_such_module")
+    monkeypatch.setattr("service.baking._MODULE", "no_such_module")
     with pytest.raises(OSError, match="ended with 1"):
         baked_apart(builtin_rig("paper"))
 
