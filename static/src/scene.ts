@@ -62,6 +62,9 @@ export class Scene {
   plain: boolean;
   private sharpening: ReturnType<typeof setTimeout> | undefined;
   private both: Pair | null = null;
+  /** Device pixels per CSS pixel now, and the size that the picture has with it. */
+  private ratio: number;
+  private sized = '';
   private scheduled = false;
   private changed = false;
   private light: LightName;
@@ -93,12 +96,12 @@ export class Scene {
     this.renderer.shadowMap.type = PCFShadowMap;
     const ratio =
       options.pixelRatio ?? Math.min(Math.max(window.devicePixelRatio, LEAST_PIXEL_RATIO), 2);
-    this.renderer.setPixelRatio(ratio);
     // Who says how finely to draw gets that.
     this.resolution =
       options.adaptive && options.pixelRatio === null
         ? new Resolution(ratio, COARSEST, this.plain ? COARSEST : ratio)
         : null;
+    this.ratio = this.resolution?.ratio ?? ratio;
     this.scene.add(this.lights.group);
     if (options.ground !== 'none') {
       this.scene.add(this.backdrop);
@@ -117,7 +120,6 @@ export class Scene {
       options.onTrouble?.('');
       this.invalidate();
     });
-    this.resize();
   }
 
   add(object: Object3D): void {
@@ -144,6 +146,13 @@ export class Scene {
     this.lights.set(LIGHTS[name]);
     if (!this.plain) this.mirrorRoom();
     this.invalidate();
+  }
+
+  /** Draw something once, and show nothing of it: its programs are compiled then. */
+  rehearse(object: Object3D): void {
+    this.scene.add(object);
+    this.renderer.render(this.scene, this.viewpoint.camera);
+    object.removeFromParent();
   }
 
   /** Add what was left out at first: what surfaces mirror, and shadows. */
@@ -238,7 +247,12 @@ export class Scene {
   }
 
   private useRatio(ratio: number): void {
-    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
+    const { clientWidth: wide, clientHeight: high } = this.canvas;
+    this.ratio = ratio;
+    // Each change of its size makes the picture anew, and costs as much as drawing in it.
+    const size = [wide, high, ratio].join();
+    if (size !== this.sized) this.renderer.setDrawingBufferSize(wide, high, ratio);
+    this.sized = size;
   }
 
   /** Resolves after the next drawing, which this asks for. */
@@ -287,7 +301,7 @@ export class Scene {
   private resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
-    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.useRatio(this.ratio);
     const width = this.both === null ? clientWidth : clientWidth / 2;
     this.renderer.setViewport(0, 0, clientWidth, clientHeight);
     this.viewpoint.fit(width, clientHeight);

@@ -1,7 +1,8 @@
 // What a slow device shows first: the face in plain materials, which are compiled at once.
 
-import type { Material, MeshStandardMaterial, Object3D } from 'three';
-import { Color, DoubleSide, Mesh, MeshLambertMaterial } from 'three';
+import type { Material, MeshStandardMaterial, Object3D, ShaderMaterial, Texture } from 'three';
+import { BufferGeometry, Color, DataTexture, Float32BufferAttribute, Group, Mesh } from 'three';
+import { sketchMaterial } from './sketch-material';
 
 /** Where a surface brings no colours: flesh, and hair. */
 const FLESH = 0xd9a58a;
@@ -18,7 +19,7 @@ const LEFT_OUT = ['cornea', 'wet'];
  */
 export function sketch(root: Object3D): () => void {
   const own: [Mesh, Material | Material[], boolean][] = [];
-  const plain = new Map<string, MeshLambertMaterial>();
+  const plain = new Map<string, ShaderMaterial>();
   root.traverse((node) => {
     if (!(node instanceof Mesh) || !node.visible) return;
     const kind = (node.userData.material as string | undefined) ?? 'skin';
@@ -40,17 +41,44 @@ export function sketch(root: Object3D): () => void {
   };
 }
 
-function drawnPlainly(
-  hair: boolean,
-  coloured: boolean,
-  map: MeshStandardMaterial['map'],
-): MeshLambertMaterial {
+/**
+ * Something of each kind that a sketch has, too small to be seen: to be drawn once while the face is on its way,
+ * so that the programs are there before it.
+ */
+export function sketchSample(): { root: Group; dispose: () => void } {
+  const geometry = new BufferGeometry();
+  for (const [name, size] of [
+    ['position', 3],
+    ['normal', 3],
+    ['color', 3],
+    ['uv', 2],
+  ] as const) {
+    geometry.setAttribute(name, new Float32BufferAttribute(new Float32Array(3 * size), size));
+  }
+  const map = new DataTexture(new Uint8Array([0, 0, 0, 0]), 1, 1);
+  map.needsUpdate = true;
+  const materials = [drawnPlainly(false, true, null), drawnPlainly(true, true, map)];
+  const root = new Group().add(
+    ...materials.map((material) => {
+      const mesh = new Mesh(geometry, material);
+      mesh.frustumCulled = false;
+      return mesh;
+    }),
+  );
+  return {
+    root,
+    dispose: () => {
+      root.removeFromParent();
+      for (const thing of [...materials, geometry, map]) thing.dispose();
+    },
+  };
+}
+
+function drawnPlainly(hair: boolean, coloured: boolean, map: Texture | null): ShaderMaterial {
   const bare = new Color(hair ? HAIR : FLESH);
-  return new MeshLambertMaterial({
+  return sketchMaterial({
     vertexColors: coloured,
     color: (coloured ? new Color(0xffffff) : bare).multiplyScalar(hair ? HAIR_GAIN : SKIN_GAIN),
-    // Cards of hair are cut out of their picture; strands are as they are.
-    ...(hair ? { side: DoubleSide, alphaTest: map === null ? 0 : 0.35 } : {}),
-    map,
+    map: hair ? map : null,
   });
 }

@@ -11,6 +11,20 @@ from service.benching.page_opening import MOMENTS
 from service.benching.report import sections
 
 pytestmark = pytest.mark.browser
+COUNT = """
+window.__made = {programs: 0, sizes: 0};
+const { linkProgram } = WebGL2RenderingContext.prototype;
+WebGL2RenderingContext.prototype.linkProgram = function (program) {
+  window.__made.programs++;
+  return linkProgram.call(this, program);
+};
+const { get, set } = Object.getOwnPropertyDescriptor(HTMLCanvasElement.prototype, 'width');
+Object.defineProperty(HTMLCanvasElement.prototype, 'width', {
+  get,
+  set(wide) { window.__made.sizes++; set.call(this, wide); },
+});
+"""
+"""Counts what keeps a page without a graphics processor busiest before its first picture."""
 
 
 def test_the_parts_of_a_page_s_opening_are_measured() -> None:
@@ -25,6 +39,15 @@ def test_the_parts_of_a_page_s_opening_are_measured() -> None:
     assert found["processor_seconds"] > 0
     (section,) = sections(figures)
     assert [row[0] for row in section.rows] == list(MOMENTS)
+
+
+def test_little_is_made_for_the_first_picture(page: playwright_api.Page, url: str) -> None:
+    page.add_init_script(COUNT)
+    page.goto(f"{url}/?idle=0&level=low&draw=sketch")
+    settle(page)
+    made = page.evaluate("() => window.__made")
+    assert 1 <= made["sizes"] <= 2, "the picture has its size before it is drawn"
+    assert 2 <= made["programs"] <= 3, "of the ground, of cards of hair, of all other surfaces"
 
 
 def test_a_person_who_leaves_does_not_close_the_face_of_others(

@@ -6,7 +6,7 @@ import type { Level } from '../level';
 import { levelFor } from '../level';
 import { mark } from '../marks';
 import { Scene } from '../scene';
-import { sketch } from '../sketch';
+import { sketch, sketchSample } from '../sketch';
 import { fetching, painting } from '../state/loading';
 import type { ViewerState } from '../state/viewer.svelte';
 import { useTheme } from '../theme';
@@ -84,14 +84,20 @@ export class OnStage {
     this.frameSeen = false;
     this.complete = false;
     viewer.step = fetching(who(), 0, 0);
-    const loaded = await Face.load(withTicket(address, ticket()), (bytes, total) => {
+    const loading = Face.load(withTicket(address, ticket()), (bytes, total) => {
       if (this.address === address) viewer.step = fetching(who(), bytes, total);
-    }).catch((error: unknown) => {
+    });
+    // What a sketch is drawn with is compiled while the face is on its way.
+    const sample = this.scene.plain ? sketchSample() : null;
+    if (sample !== null) this.scene.rehearse(sample.root);
+    const loaded = await loading.catch((error: unknown) => {
+      sample?.dispose();
       if (this.address === address) this.address = '';
       throw error;
     });
     if (this.address !== address) {
       loaded.dispose();
+      sample?.dispose();
       return;
     }
     this.face?.dispose();
@@ -109,6 +115,7 @@ export class OnStage {
     // The frame that came while loading is still waiting, and is drawn now.
     await this.scene.rendered();
     await this.scene.done();
+    sample?.dispose();
     mark('first-frame');
     if (!page.bare && !curtain.isOpen && this.uncover === null) this.scene.viewpoint.enter();
     curtain.open();
