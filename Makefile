@@ -37,7 +37,7 @@ BROW_MUSCLES := "frontalis_medial": 0.9, "frontalis_lateral": 0.9, "corrugator_s
 	"procerus": 0.9, "depressor_supercilii": 0.9
 
 sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
-	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 240 --columns 8
+	$(BIN)/risorius sheet -o docs/expressions.jpg --view front --size 192 --columns 8
 	$(BIN)/risorius sheet -o docs/emotions.jpg --view front --size 360 --columns 4 --set emotions
 	$(BIN)/risorius sheet -o docs/intensities.jpg --view front --size 240 --columns 7 --set intensities
 	$(BIN)/risorius sheet -o docs/combinations.jpg --view front --size 280 --columns 5 --set combinations
@@ -57,7 +57,7 @@ sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	$(BIN)/risorius sheet -o docs/tissue-regions.jpg --only 12E,18E,27E --view front --size 280 --columns 3 \
 		--edit '{"name": "stiff left", "tissue": {"region_stiffness": {"cheek.L": 10, "nasolabial.L": 10, "lip.L": 10}}}' \
 		--edit '{"name": "lax left", "tissue": {"region_laxity": {"cheek.L": 1, "nasolabial.L": 1, "lip.L": 1}}}'
-	$(BIN)/risorius screens -o docs --jpeg --only inside-dermis,viewer-phone
+	$(BIN)/risorius screens -o docs --jpeg --only inside-dermis,inside-editor,viewer-phone
 
 # The people's pictures in the viewer.
 portraits: $(STAMPS)/python-dev $(STAMPS)/viewer chromium

@@ -165,7 +165,7 @@ def test_the_paper_s_face_opens(page: playwright_api.Page, url: str, tmp_path: P
 def test_the_camera_goes_close_and_round(
     page: playwright_api.Page, url: str, tmp_path: Path
 ) -> None:
-    page.goto(f"{url}/?bare=1&view=eye")
+    page.goto(f"{url}/?bare=1&view=eye&level=low")
     settle(page)
     page.wait_for_function("() => window.__viewer.textured")
     pictures = []

@@ -225,3 +225,13 @@ def test_every_rule_of_facs_is_documented_with_its_codes(api: str) -> None:
     for need in needs():
         others = " or ".join(name.removeprefix("AU") for name in need.any_of)
         assert f"| `{need.rule}` | {need.unit.removeprefix('AU')} without {others} |" in api
+
+
+def test_every_picture_is_shown_and_all_of_them_are_light() -> None:
+    pictures = sorted(DOCS.glob("*.jpg"))
+    pages = [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
+    words = "".join(page.read_text(encoding="utf-8") for page in pages)
+    assert [picture.name for picture in pictures if picture.name not in words] == []
+    made = (DOCS.parent / "Makefile").read_text(encoding="utf-8")
+    assert [picture.stem for picture in pictures if picture.stem not in made] == []
+    assert sum(picture.stat().st_size for picture in pictures) < 3_000_000
