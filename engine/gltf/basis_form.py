@@ -134,16 +134,16 @@ def _fitted_by(areas: list[IntArray], piece: Piece, packing: Packing, check: Che
     """
     grid = packing.grid(metres(piece.rest))
     for own in (grid, Grid()):
-        # What is left of the tolerance where the places at rest are rounded, too.
-        tolerance = packing.tolerance - own.error * 1e3 - ROUNDING
+        tolerance = packing.tolerance - ROUNDING
         regions = [
-            _region(piece.motion, area, own, tolerance, packing.sparse, check) for area in areas
+            _region(_FromStored(piece, area, own), area, own, tolerance, packing.sparse, check)
+            for area in areas
         ]
         error = max(region.basis.max_error for region in regions)
         if error <= tolerance:
             break
     moving = [region for region in regions if region.basis.shapes.any()]
-    return _Fitted(piece, tuple(moving or regions[:1]), own, error + own.error * 1e3)
+    return _Fitted(piece, tuple(moving or regions[:1]), own, error)
 
 
 def _region(
@@ -155,7 +155,7 @@ def _region(
     check: Check,
 ) -> _Region:
     basis = fit_basis(
-        _Some(motion, vertices),
+        motion,
         tolerance=tolerance,
         step=grid.step * 1e3,
         sparse=sparse,
@@ -164,18 +164,22 @@ def _region(
     return _Region(vertices, basis)
 
 
-class _Some:
-    """The motion of some vertices."""
+class _FromStored:
+    """The motion of some vertices of a piece, from where they are stored at rest.
 
-    def __init__(self, motion: Motion, vertices: IntArray) -> None:
-        self._motion = motion
+    So what a grid takes from their places is a part of the motion, and of the error.
+    """
+
+    def __init__(self, piece: Piece, vertices: IntArray, grid: Grid) -> None:
+        self._motion = piece.motion
         self._vertices = vertices
+        self._off: Float32Array = (grid.off(metres(piece.rest)) * 1e3).astype(np.float32)[vertices]
 
     def __len__(self) -> int:
         return len(self._motion)
 
     def __getitem__(self, frames: slice | IntArray, /) -> Float32Array:
-        return np.ascontiguousarray(self._motion[frames][:, self._vertices])
+        return np.asarray(self._motion[frames][:, self._vertices] + self._off)
 
 
 def _turns(motion: ClipMotion, fitted: _Fitted, sparse: bool) -> list[Float32Array]:

@@ -1,8 +1,8 @@
 """Parts that a clip's file draws with fewer vertices, where it is not of the level "high".
 
 Hair is most of a head's vertices, and brows and lashes have morph targets. A file at a lower level
-has fewer and coarser strands, each wider, so that as much is covered; and what is seen of gums and
-palate needs no more corners than the skin has.
+has fewer and coarser strands, each wider, so that as much is covered; and what is seen of gums,
+palate and the backs of teeth needs no more corners than the skin has.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.sparse import coo_array
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..head.head import Part
 from .drawn import unit_normals
 
@@ -44,8 +44,11 @@ THINNINGS = {
     "lashes": Thinning(kept=3, points=3, width=2.2),
 }
 """By the name of the part."""
-CELLS = {"caruncle": 1.5, "gum": 2.0, "palate": 3.0, "mouth_floor": 3.0}
+CELLS = {"caruncle": 1.5, "teeth": 2.2, "gum": 2.5, "palate": 3.0, "mouth_floor": 3.0}
 """Side of the cells whose vertices become one [mm], by the name of the part without its side."""
+IN_FRONT, TOWARDS = 78.0, -0.1
+"""Of teeth, vertices farther forward [mm] whose normals point forward at all, z, stay as they are:
+the faces of incisors and canines are what a smile shows."""
 
 
 @lru_cache(maxsize=32)
@@ -55,8 +58,11 @@ def lighter(part: Part, level: str) -> Part:
         return part
     if part.name in THINNINGS:
         return _thinned(part, THINNINGS[part.name])
-    cell = CELLS.get(part.name.partition(".")[0])
-    return part if cell is None else _coarser(part, cell)
+    kind = part.name.partition(".")[0]
+    if kind not in CELLS:
+        return part
+    shown = (part.vertices[:, 2] > IN_FRONT) & (part.normals[:, 2] > TOWARDS)
+    return _coarser(part, CELLS[kind], shown if kind == "teeth" else np.zeros_like(shown))
 
 
 def _thinned(part: Part, thinning: Thinning) -> Part:
@@ -118,10 +124,14 @@ def _only(
     )
 
 
-def _coarser(part: Part, cell: float) -> Part:
-    """Return a part in which all vertices of a cell that face the same way are one: their mean."""
+def _coarser(part: Part, cell: float, kept: BoolArray) -> Part:
+    """Return a part in which all vertices of a cell that face the same way are one: their mean.
+
+    Those that are `kept`, shape (v,), stay as they are.
+    """
     facing = (part.normals > 0).astype(np.int64) @ np.array([1, 2, 4])
-    cells = np.column_stack([np.floor(part.vertices / cell).astype(np.int64), facing])
+    alone = np.where(kept, np.arange(1, len(kept) + 1), 0)
+    cells = np.column_stack([np.floor(part.vertices / cell).astype(np.int64), facing, alone])
     labels = np.unique(cells, axis=0, return_inverse=True)[1].ravel()
     triangles = labels[part.triangles]
     flat = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)

@@ -71,6 +71,12 @@ class Grid:
             return places
         return np.asarray(np.rint((places - self.origin) / self.step), np.int16)
 
+    def off(self, places: Array) -> Array:
+        """Return how far places [m], shape (v, 3), are from where they are stored."""
+        if self.origin is None:
+            return np.zeros_like(places)
+        return places - (self.origin + self.step * self.places(places))
+
     def moves(self, moves: Array) -> Array:
         """Return displacements [m], shape (v, 3), as they are stored."""
         if self.origin is None:

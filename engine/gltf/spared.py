@@ -10,6 +10,9 @@ import numpy as np
 
 from ..arrays import Float32Array, FloatArray, IntArray
 
+TRIES = 2
+"""Shapes that a vertex cannot be spared before no more are tried; all would gain little more."""
+
 
 def spared(
     frames: Float32Array,
@@ -19,7 +22,7 @@ def spared(
 ) -> FloatArray:
     """Return `shapes` with zeros where a vertex stays within `tolerance` of all frames without.
 
-    Of each vertex the shape that moves it least goes first, then the next, until one cannot be
+    Of each vertex the shape that moves it least goes first, then the next, until `TRIES` cannot be
     spared. What is off anyway keeps all of its shapes.
 
     Args:
@@ -38,13 +41,16 @@ def spared(
     least = np.broadcast_to(np.asarray(tolerance, np.float64) ** 2, vertices)
     kept = np.ones((count, vertices), bool)
     trying: IntArray = np.arange(vertices)
+    missed = np.zeros(vertices, np.int64)
     for shape in order:
         chosen = shape[trying]
         without = left[:, trying] - own[:, chosen, None] * moves[chosen, trying]
         enough = np.einsum("fvi,fvi->fv", without, without).max(axis=0) <= least[trying]
-        trying = trying[enough]
-        kept[shape[trying], trying] = False
-        left[:, trying] = without[:, enough]
+        gone = trying[enough]
+        kept[shape[gone], gone] = False
+        left[:, gone] = without[:, enough]
+        missed[trying[~enough]] += 1
+        trying = trying[missed[trying] < TRIES]
         if not trying.size:
             break
     return np.asarray(shapes * np.repeat(kept, 3, axis=1))
