@@ -28,14 +28,6 @@ def measure(
     from .flesh import flesh_markdown, measure_flesh
     from .measuring import markdown, measure_people, measure_rig, people_markdown
 
-    if flesh:
-        with console.status("measuring") as status:
-            found = measure_flesh(
-                builtin_rig(rig), mixes, lambda stage: status.update(f"measuring {stage}")
-            )
-        typer.echo(json.dumps(found, indent=2) if as_json else flesh_markdown(found))
-        return
-
     if people:
         with console.status("measuring") as status:
             everybody = measure_people(lambda name: status.update(f"measuring {name}"))
@@ -43,12 +35,18 @@ def measure(
         return
     try:
         with console.status("measuring") as status:
-            figures = measure_rig(
-                builtin_rig(rig), lambda stage: status.update(f"measuring {stage}")
-            )
+
+            def show(stage: str) -> None:
+                status.update(f"measuring {stage}")
+
+            if flesh:
+                figures = measure_flesh(builtin_rig(rig), mixes, show)
+            else:
+                figures = measure_rig(builtin_rig(rig), show)
     except EngineError as error:
         refuse(f"The rig cannot be measured: {error}.")
-    typer.echo(json.dumps(figures, indent=2, allow_nan=False) if as_json else markdown(figures))
+    table = flesh_markdown if flesh else markdown
+    typer.echo(json.dumps(figures, indent=2, allow_nan=False) if as_json else table(figures))
 
 
 def analyze(

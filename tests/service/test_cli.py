@@ -51,6 +51,14 @@ def test_a_timeline_is_rendered(timeline: Path, tmp_path: Path) -> None:
     assert output.read_bytes()[:4] == b"glTF"
 
 
+@pytest.mark.parametrize(
+    "command",
+    ["measure", "measure --flesh", "analyze --facs 12", "emotions", "units", "separability"],
+)
+def test_a_rig_that_is_not_there_is_refused(command: str) -> None:
+    assert "no rig named 'nobody'" in refused(run(*command.split(), "--rig", "nobody"))
+
+
 def test_ground_truth_is_written_beside_a_clip(track: Path, tmp_path: Path) -> None:
     before = track.read_text()
     output = tmp_path / "laugh.glb"
