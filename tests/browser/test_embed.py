@@ -6,7 +6,7 @@ import io
 import re
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -21,6 +21,7 @@ from service.settings import Settings
 
 pytestmark = pytest.mark.browser
 START_SECONDS = 300.0
+PATIENCE_SECONDS = 60.0
 KEY = "a-key-of-this-test-alone"
 BEARER = {"Authorization": f"Bearer {KEY}"}
 PAGE = """<!doctype html><title>A chat</title>
@@ -69,6 +70,14 @@ def ticket(page: playwright_api.Page, session: str) -> str:
     return str(answer.json()["ticket"])
 
 
+def until(page: playwright_api.Page, true: Callable[[], bool]) -> None:
+    """Wait, while the page goes on, until `true` holds."""
+    deadline = time.monotonic() + PATIENCE_SECONDS
+    while not true():
+        assert time.monotonic() < deadline, "it did not come true in time"
+        page.wait_for_timeout(100)
+
+
 def felt(page: playwright_api.Page, session: str) -> str | None:
     """Return the label that a face plays."""
     layers = page.request.get(session, headers=BEARER).json()["layers"]
@@ -105,22 +114,19 @@ def test_faces_stand_on_a_page_of_another_origin_by_tickets(
             assert isinstance(middle, tuple)
             assert middle[1] > 30
             face.evaluate("face => face.setAttribute('emotion', 'joy')")
-            while felt(page, f"{api}/{one}") != "joy":
-                assert time.monotonic() < deadline
-                page.wait_for_timeout(100)
-            assert felt(page, f"{api}/{two}") == "anger"
+            until(page, lambda: felt(page, f"{api}/{one}") == "joy")
+            until(page, lambda: felt(page, f"{api}/{two}") == "anger")
             page.evaluate("() => window.scrollTo(0, 2000)")
             playwright_api.expect(face).to_have_attribute("state", "resting", timeout=60_000)
-            while page.request.get(f"{api}/{one}", headers=BEARER).json()["viewers"] > 0:
-                assert time.monotonic() < deadline
-                page.wait_for_timeout(100)
+            until(
+                page,
+                lambda: page.request.get(f"{api}/{one}", headers=BEARER).json()["viewers"] == 0,
+            )
             # What it is asked where nobody sees it, it does when it is seen.
             face.evaluate("face => face.setAttribute('emotion', 'anger')")
             page.evaluate("() => window.scrollTo(0, 0)")
             playwright_api.expect(face).to_have_attribute("state", "ready", timeout=60_000)
-            while felt(page, f"{api}/{one}") != "anger":
-                assert time.monotonic() < deadline
-                page.wait_for_timeout(100)
+            until(page, lambda: felt(page, f"{api}/{one}") == "anger")
             stranger = page.locator("#none")
             playwright_api.expect(stranger).to_have_attribute("state", "locked", timeout=60_000)
             page.request.delete(f"{api}/{two}", headers=BEARER)
