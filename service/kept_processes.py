@@ -79,11 +79,11 @@ class KeptProcesses:
         self._idle[process] = timer
 
     async def end(self, process: Process) -> None:
-        """Kill one that has not come to the end of its order."""
+        """End one that has not come to the end of its order; it may put away what it opened."""
         self._bystanders.remove(process.pid)
         with suppress(ProcessLookupError):
-            process.kill()
-        await process.wait()
+            process.terminate()
+        await _ended(process)
 
     async def stop(self) -> None:
         """Let go of those that wait, until they have ended."""
@@ -91,16 +91,20 @@ class KeptProcesses:
         for process, timer in waiting.items():
             timer.cancel()
             self._let_go(process)
-        await asyncio.gather(*map(self._ended, waiting))
-
-    async def _ended(self, process: Process) -> None:
-        try:
-            await asyncio.wait_for(process.wait(), _ENDING_SECONDS)
-        except TimeoutError:
-            await self.end(process)
+        await asyncio.gather(*map(_ended, waiting))
 
     def _let_go(self, process: Process) -> None:
         """Tell a process that no more comes: it then ends."""
         self._idle.pop(process, None)
         assert process.stdin is not None
         process.stdin.close()
+
+
+async def _ended(process: Process) -> None:
+    """Wait until a process has ended; kill one that takes too long."""
+    try:
+        await asyncio.wait_for(process.wait(), _ENDING_SECONDS)
+    except TimeoutError:
+        with suppress(ProcessLookupError):
+            process.kill()
+        await process.wait()

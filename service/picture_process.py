@@ -5,8 +5,9 @@ Its arguments are the folder of the cache and that of the built viewer.
 
 from __future__ import annotations
 
+import signal
 import sys
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from .browser import NoBrowser
@@ -52,9 +53,11 @@ class _Photographer:
 
 
 def main() -> None:
-    """Photograph until nobody orders any more."""
+    """Photograph until nobody orders any more, or in the middle of it it is told to end."""
     stay_back()
-    with ExitStack() as opened:
+    # So that a browser, its profile and a folder are not left behind.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with suppress(KeyboardInterrupt), ExitStack() as opened:
         work(_Photographer(opened, [Path(folder) for folder in sys.argv[1:3]]).picture)
 
 
