@@ -20,21 +20,41 @@ _MAPPINGS = ("action_units", "muscles", "jaw", "gaze", "head", "tongue")
 _PLAIN = ("layer", "owner", "fade", "hold", "ttl", "fade_out", "weight", "replace", "expression")
 
 
-async def record_last(sessions: Sessions, session: Session, *, last: float, fps: int) -> NewClip:
+async def record_last(
+    sessions: Sessions, session: Session, *, last: float, fps: int, filled: float = 0.0
+) -> NewClip:
     """Return the last seconds of a session as a clip, as `recorded_clip` does, in a thread.
+
+    Args:
+        sessions: All of them.
+        session: Whose face.
+        last: Seconds to record.
+        fps: Frames a second.
+        filled: Seconds that the clip has at least where the face sleeps: it goes on with the face
+            as it stands, at most until a lease ends.
 
     Raises:
         Conflict: If nothing was ever set on the face.
     """
     view = await sessions.view(session)
+    now = view.frame.tick
+    ends = session.held.alarm() if view.frame.asleep else now
     tail, rig, model = session.tail.copy(), session.rig, session.model
     return await asyncio.to_thread(
-        recorded_clip, tail, rig, model, now=view.frame.tick, last=last, fps=fps
+        recorded_clip, tail, rig, model, now=now, last=last, fps=fps, filled=filled, ends=ends
     )
 
 
 def recorded_clip(
-    tail: Tail, rig: Rig, model: Model, *, now: int, last: float, fps: int
+    tail: Tail,
+    rig: Rig,
+    model: Model,
+    *,
+    now: int,
+    last: float,
+    fps: int,
+    filled: float = 0.0,
+    ends: int | None = None,
 ) -> NewClip:
     """Return the last seconds of a session's timeline as a clip.
 
@@ -50,6 +70,8 @@ def recorded_clip(
         now: Its tick.
         last: Seconds to record.
         fps: Frames a second.
+        filled: Seconds that the clip has at least: it goes on with the face as it stands now.
+        ends: Tick after which it stands so no more; None where nothing is to come.
 
     Raises:
         Conflict: If nothing was ever set on the face.
@@ -59,6 +81,8 @@ def recorded_clip(
         raise Conflict("nothing_recorded", message)
     begin = max(tail.begins, now - round(last * TICKS_PER_SECOND))
     young = tail.whole and begin == tail.begins
+    end = begin + round(filled * TICKS_PER_SECOND)
+    end = max(now, end if ends is None else min(end, ends))
     # Before its first tick a face is at rest, so the lead may begin there.
     origin = begin if young else begin - round(LEAD_SECONDS * TICKS_PER_SECOND)
     held, early = tail.before, [each for each in tail.commands if each.tick < origin]
@@ -78,7 +102,7 @@ def recorded_clip(
             "fps": fps,
             "timeline": [*before, *played],
             "start": (begin - origin) / TICKS_PER_SECOND,
-            "duration": (now - origin) / TICKS_PER_SECOND,
+            "duration": (end - origin) / TICKS_PER_SECOND,
             "model": asdict(model),
         }
     )

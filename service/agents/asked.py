@@ -187,7 +187,9 @@ class ExportClip(Body):
         default=None, description="Render what this live face did last."
     )
     last: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=3600)] = Field(
-        default=10.0, description="Seconds of the live face; time that it slept does not count."
+        default=10.0,
+        description="Seconds of the live face, from its last movements on; a face that stands "
+        "still is shown so to their end.",
     )
     clip_id: SessionId | None = Field(
         default=None, description="Wait on for a clip that was not done; as answered before."

@@ -34,7 +34,11 @@ async def export_clip(asked: ExportClip, parts: Components, caller: Caller) -> E
 async def _clip(asked: ExportClip, parts: Components, caller: Caller) -> NewClip:
     if asked.session_id is not None:
         session = await parts.sessions.get(asked.session_id)
-        return await record_last(parts.sessions, session, last=asked.last, fps=asked.fps)
+        # A model expects the seconds that it asked for, however short the face was awake.
+        filled = min(asked.last, parts.settings.max_clip_seconds)
+        return await record_last(
+            parts.sessions, session, last=asked.last, fps=asked.fps, filled=filled
+        )
     beats = sorted(asked.timeline or [], key=lambda beat: beat.time)
     return NewClip(
         rig=asked.rig,

@@ -274,8 +274,14 @@ async def test_what_a_face_did_last_is_rendered(url: str) -> None:
         clip = await call(client, "export_clip", session_id=face, last=0.5, fps=30, wait=60.0)
         while clip["status"] != "done":
             clip = await call(client, "export_clip", clip_id=clip["clip_id"])
-    assert clip["frames"] == 16
-    assert clip["duration"] == pytest.approx(0.5)
+        assert clip["frames"] == 16
+        assert clip["duration"] == pytest.approx(0.5)
+        while not (await call(client, "get_state", session_id=face))["asleep"]:
+            pass
+        clip = await call(client, "export_clip", session_id=face, last=4.0, fps=10, wait=60.0)
+        while clip["status"] != "done":
+            clip = await call(client, "export_clip", clip_id=clip["clip_id"])
+        assert clip["duration"] == pytest.approx(4.0)
 
 
 async def test_a_client_of_the_older_protocol_is_served(url: str) -> None:

@@ -81,6 +81,23 @@ def test_the_last_second_is_the_face_s_own(now: int) -> None:
     assert apart < 0.02 * moved
 
 
+def test_a_face_that_sleeps_is_shown_still_until_the_seconds_are_full() -> None:
+    smile = told([Command(0, Keyframe(action_units={"AU12": 0.8}, fade=0.1))])
+    clip = recorded_clip(smile, RIG, MODEL, now=80, last=3.0, fps=30, filled=3.0)
+    assert (clip.start, clip.duration) == (0.0, 3.0)
+    frames = played(clip).displacements
+    assert len(frames) == 91
+    late = np.abs(frames[45:] - frames[-1]).max()
+    assert late < 0.01 < np.abs(frames[10] - frames[-1]).max()
+
+
+@pytest.mark.parametrize(("ends", "until"), [(None, 180), (100, 100), (80, 80), (30, 80)])
+def test_a_still_face_is_shown_until_a_lease_ends(ends: int | None, until: int) -> None:
+    smile = told([Command(0, Keyframe(action_units={"AU12": 0.8}))])
+    clip = recorded_clip(smile, RIG, MODEL, now=80, last=3.0, fps=30, filled=3.0, ends=ends)
+    assert clip.duration == until / 60
+
+
 def test_what_is_recorded_is_kept_as_plain_json() -> None:
     clip = recorded_clip(told(commands()), RIG, MODEL, now=NOW, last=1.0, fps=30)
     kept = clip.model_dump(mode="json", exclude_unset=True)
