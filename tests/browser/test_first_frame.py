@@ -43,7 +43,8 @@ def test_the_parts_of_a_page_s_opening_are_measured() -> None:
 
 def test_little_is_made_for_the_first_picture(page: playwright_api.Page, url: str) -> None:
     page.add_init_script(COUNT)
-    page.goto(f"{url}/?idle=0&level=low&draw=sketch")
+    # With pixels of its own, for the page would draw finer and coarser as the machine has time.
+    page.goto(f"{url}/?idle=0&level=low&dpr=0.5&draw=sketch")
     settle(page)
     made = page.evaluate("() => window.__made")
     assert 1 <= made["sizes"] <= 2, "the picture has its size before it is drawn"
