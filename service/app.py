@@ -24,6 +24,7 @@ from .components import Components
 from .errors import Refused, error_body, json_response
 from .explaining import did_you_mean, explain
 from .guard import Guard, RateLimit
+from .heads import Heads
 from .idempotency import Idempotency
 from .keys import KeyRing
 from .metrics import CountRequests, Metrics
@@ -78,6 +79,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     _mount_viewer(app, settings)
     _answer_errors(app)
     # The last one added is the outermost.
+    app.add_middleware(Heads)
     app.add_middleware(Idempotency)
     if settings.allowed_origins:
         app.add_middleware(
