@@ -135,9 +135,9 @@ def _coarser(part: Part, cell: float, kept: BoolArray) -> Part:
     labels = np.unique(cells, axis=0, return_inverse=True)[1].ravel()
     triangles = labels[part.triangles]
     flat = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
-    kept = triangles[~flat]
-    _, first = np.unique(np.sort(kept, axis=1), axis=0, return_index=True)
-    used, renamed = np.unique(kept[np.sort(first)], return_inverse=True)
+    whole = triangles[~flat]
+    _, first = np.unique(np.sort(whole, axis=1), axis=0, return_index=True)
+    used, renamed = np.unique(whole[np.sort(first)], return_inverse=True)
     return replace(
         part,
         vertices=_means(part.vertices, labels)[used],

@@ -9,6 +9,7 @@ from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from typing import Any
 
+import anyio
 import httpx2
 import jsonschema
 import pytest
@@ -148,7 +149,7 @@ async def test_the_latest_call_is_the_whole_face(url: str) -> None:
         face = (await call(client, "open_face"))["session_id"]
         await call(client, "set_action_units", session_id=face, facs="4D+L46E+51C")
         while not (pose := (await call(client, "get_state", session_id=face))["pose"]):
-            pass
+            await anyio.sleep(0.02)
         assert set(pose) == {"head"}  # What is not commanded is left out.
         assert set(pose["head"]) == {"yaw"}
         await call(client, "set_emotion", session_id=face, label="happiness")
@@ -270,14 +271,14 @@ async def test_what_a_face_did_last_is_rendered(url: str) -> None:
         assert refused["error"] == "nothing_recorded"
         await call(client, "set_emotion", session_id=face, label="joy", fade_in=0.1)
         while (await call(client, "get_state", session_id=face))["tick"] < 60:
-            pass
+            await anyio.sleep(0.02)
         clip = await call(client, "export_clip", session_id=face, last=0.5, fps=30, wait=60.0)
         while clip["status"] != "done":
             clip = await call(client, "export_clip", clip_id=clip["clip_id"])
         assert clip["frames"] == 16
         assert clip["duration"] == pytest.approx(0.5)
         while not (await call(client, "get_state", session_id=face))["asleep"]:
-            pass
+            await anyio.sleep(0.02)
         clip = await call(client, "export_clip", session_id=face, last=4.0, fps=10, wait=60.0)
         while clip["status"] != "done":
             clip = await call(client, "export_clip", clip_id=clip["clip_id"])
