@@ -40,6 +40,7 @@ export class Face {
   private readonly tissueRest: Float32Array;
   private readonly tissueTriangles: ArrayLike<number>;
   private clipped: Plane[] = [];
+  private fleshClipped = false;
   private readonly strands: RidingStrands[] = [];
   private readonly nodes: FaceNodes;
   private readonly grid: number;
@@ -211,20 +212,24 @@ export class Face {
   paint(material: Material | Material[]): Material | Material[] {
     const own = this.skin.material;
     this.skin.material = material;
-    this.clip(this.clipped[0] ?? null);
+    this.clip(this.clipped[0] ?? null, this.fleshClipped);
     return own;
   }
 
-  /** Leave out what of skin and hair lies behind a plane of the world; null leaves out nothing. */
-  clip(plane: Plane | null): void {
+  /**
+   * Leave out what of skin and hair, and of the flesh in mouth and lids where `flesh` is set, lies
+   * behind a plane of the world; null leaves out nothing.
+   */
+  clip(plane: Plane | null, flesh = false): void {
     this.clipped = plane === null ? [] : [plane];
+    this.fleshClipped = flesh;
     for (const mesh of meshes(this.root)) {
       const { role, material: kind } = mesh.userData as { role?: string; material?: string };
-      if (mesh !== this.skin && role !== 'strands' && kind !== 'hair') continue;
+      const planes = kind === 'wet' && !flesh ? [] : this.clipped;
+      if (mesh !== this.skin && role !== 'strands' && kind !== 'hair' && kind !== 'wet') continue;
       for (const material of [mesh.material].flat()) {
-        if ((material.clippingPlanes?.length ?? 0) !== this.clipped.length)
-          material.needsUpdate = true;
-        material.clippingPlanes = this.clipped;
+        if ((material.clippingPlanes?.length ?? 0) !== planes.length) material.needsUpdate = true;
+        material.clippingPlanes = planes;
       }
     }
   }
