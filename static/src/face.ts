@@ -223,11 +223,14 @@ export class Face {
   clip(plane: Plane | null, flesh = false): void {
     this.clipped = plane === null ? [] : [plane];
     this.fleshClipped = flesh;
+    const skins = [this.skin.material].flat();
     for (const mesh of meshes(this.root)) {
       const { role, material: kind } = mesh.userData as { role?: string; material?: string };
       const planes = kind === 'wet' && !flesh ? [] : this.clipped;
       if (mesh !== this.skin && role !== 'strands' && kind !== 'hair' && kind !== 'wet') continue;
       for (const material of [mesh.material].flat()) {
+        // A sketch draws flesh, which it leaves out, and skin with one material.
+        if (kind === 'wet' && skins.includes(material)) continue;
         if ((material.clippingPlanes?.length ?? 0) !== planes.length) material.needsUpdate = true;
         material.clippingPlanes = planes;
       }
