@@ -25,7 +25,7 @@ from .facs import (
     print_facs,
     split_side,
 )
-from .force_basis import whole_pull
+from .force_basis import jaw_rides, whole_pull
 from .head import (
     LEVELS,
     STANDARD,
@@ -391,8 +391,13 @@ class Rig:
         return replace(rig, emotions=labels)
 
     def describe(self) -> dict[str, object]:
-        """Return the rig as plain data: what clients build their panels from."""
+        """Return the rig as plain data: what clients build their panels from.
+
+        Beside what is set of a muscle stand the least and greatest `activation`, and `jaw_share`:
+        by how much of the jaw's turn its bone end rides, or all of a ring.
+        """
         head = self.head
+        rides = jaw_rides(head, self.muscles)[:, 0]
         return {
             "id": self.id,
             "name": self.name,
@@ -402,8 +407,9 @@ class Rig:
                 {
                     **asdict(muscle),
                     "activation": [min(0.0, max(-1.0, least_activation(muscle))), 1.0],
+                    "jaw_share": round(float(share), 4),
                 }
-                for muscle in self.muscles
+                for muscle, share in zip(self.muscles, rides, strict=True)
             ],
             "action_units": [
                 {**asdict(unit), "jaw": unit.jaw, "range": [0.0, 1.0]}

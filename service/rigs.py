@@ -86,6 +86,11 @@ def tag_of(rig: Rig, level: str) -> str:
     return rig.id if level == FULL else f"{rig.id}-{level}"
 
 
+def tissue_tag(rig: Rig) -> str:
+    """Return what names a rig's tissue file in its present form, the one with `_JAW`."""
+    return f"{rig.id}-riding"
+
+
 def export_tag(rig: Rig, level: str, *, textured: bool) -> str:
     """Return what names a file of a rig that embeds its maps, or leaves them out.
 

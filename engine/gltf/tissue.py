@@ -23,8 +23,9 @@ SHEETS = ("epidermis", "dermis", "hypodermis", "bone")
 def tissue_to_glb(rig: Rig) -> bytes:
     """Return the tissue file of `rig` as GLB, in metres, in the head's frame.
 
-    Nodes `epidermis` … `bone` are triangles, their extras `{"role": "sheet", "sheet": 0..3}`. The
-    others are lines over the points of all four sheets, one after the other, with the extras
+    Nodes `epidermis` … `bone` are triangles, their extras `{"role": "sheet", "sheet": 0..3}`;
+    `_JAW` of the bone is by how much of the jaw's turn each of its points rides. The others are
+    lines over the points of all four sheets, one after the other, with the extras
     `{"role": "springs", "kind": "structural" | "shear" | "tie", "from": 0..2, "to": 0..3}`.
     """
     model = assemble(rig.head, rig.parameters, literal_springs=rig.model.springs == "literal")
@@ -32,9 +33,10 @@ def tissue_to_glb(rig: Rig) -> bytes:
     builder = GlbBuilder({**extras, "nodes": model.node_count})
     points = rest_points(model)
     for sheet, name in enumerate(SHEETS):
-        primitive = builder.primitive(
-            {"POSITION": metres(points[sheet])}, model.sheet.elements, material="skin"
-        )
+        attributes = {"POSITION": metres(points[sheet])}
+        if name == "bone":
+            attributes["_JAW"] = rig.head.jaw_weight[: model.node_count].astype(np.float32)
+        primitive = builder.primitive(attributes, model.sheet.elements, material="skin")
         mesh = builder.mesh(name, [primitive])
         builder.node(name, mesh=mesh, extras={"role": "sheet", "sheet": sheet})
     for (kind, outer, inner), pairs in springs_of(model).items():

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from ..bodies import NewRig
 from ..components import Parts
-from ..rigs import FULL, UNITS, tag_of, targets_tag
+from ..rigs import FULL, UNITS, tag_of, targets_tag, tissue_tag
 from .answers import TAGGED, GlbResponse, LevelOfDetail, Textured, client_has, tagged_glb
 
 router = APIRouter(prefix="/api/rigs", tags=["rigs"])
@@ -72,5 +72,6 @@ async def surface_glb(
 async def tissue_glb(rig: str, parts: Parts, request: Request) -> Response:
     """Return the sheets of tissue under the skin at rest, and their springs as lines."""
     found = await parts.rigs.get(rig)
-    data = b"" if client_has(request, found.id) else await parts.rigs.tissue(found)
-    return tagged_glb(request, data, found.id)
+    tag = tissue_tag(found)
+    data = b"" if client_has(request, tag) else await parts.rigs.tissue(found)
+    return tagged_glb(request, data, tag)

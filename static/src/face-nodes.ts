@@ -4,20 +4,27 @@ import type { Mesh, Object3D } from 'three';
 import { Euler, Quaternion, Vector3 } from 'three';
 import { meshes, nodeName } from './gltf-nodes';
 import type { FacePose } from './pose';
+import type { JawPose } from './riding';
+import { SHUT } from './riding';
 
 /** How far a file puts the tongue out that does not say [m]. */
 const DEFAULT_TONGUE_THRUST = 0.04;
 const RADIANS = Math.PI / 180;
+const MILLIMETRES = 1000;
 
 export class FaceNodes {
   private readonly nodes = new Map<string, Object3D>();
   private readonly jawRest: Vector3;
+  /** Where the jaw's hinge is at rest [mm, head frame]. */
+  private readonly hinge: Vector3;
   private readonly headRest: Vector3;
   private readonly tongue: Mesh | undefined;
 
   constructor(private readonly root: Object3D) {
     root.traverse((node) => this.nodes.set(nodeName(node), node));
     this.jawRest = this.get('jaw')?.position.clone() ?? new Vector3();
+    this.hinge = new Vector3(...[0, 1, 2].map((axis) => this.origin('jaw', axis)));
+    this.hinge.multiplyScalar(MILLIMETRES);
     this.headRest = this.get('head')?.position.clone() ?? new Vector3();
     this.tongue = meshes(root).find((mesh) => nodeName(mesh) === 'tongue');
   }
@@ -38,6 +45,18 @@ export class FaceNodes {
       this.slide('head', this.headRest, [0, 0, pose.headThrust]),
       this.putOutTongue(pose.tongueThrust),
     ].includes(true);
+  }
+
+  /** The jaw as it stands; shut on a face without one. */
+  get jaw(): JawPose {
+    const jaw = this.get('jaw');
+    if (jaw === undefined) return SHUT;
+    const offset = jaw.position.clone().sub(this.jawRest).multiplyScalar(MILLIMETRES);
+    return {
+      hinge: this.hinge.toArray(),
+      offset: offset.toArray(),
+      quaternion: jaw.quaternion.toArray(),
+    };
   }
 
   /** Have something that lies in the head's frame [m] go with the head. */

@@ -8,6 +8,7 @@ import { FaceNodes } from './face-nodes';
 import { dynamic, meshes, plainArray } from './gltf-nodes';
 import { MovingNormals } from './normals';
 import type { FacePose, Triple } from './pose';
+import type { JawPose } from './riding';
 import { mouthWalls, skinForm } from './skin-form';
 import { Strands } from './strands';
 import type { DrawnSurface } from './surface';
@@ -177,6 +178,11 @@ export class Face {
     this.nodes.carry(object);
   }
 
+  /** The jaw as it stands. */
+  get jaw(): JawPose {
+    return this.nodes.jaw;
+  }
+
   /** All streamed points at rest [mm, head frame], x y z after x y z. */
   get restPoints(): Float32Array {
     return this.tissueRest.map(
@@ -216,10 +222,7 @@ export class Face {
     return own;
   }
 
-  /**
-   * Leave out what of skin and hair, and of the flesh in mouth and lids where `flesh` is set, lies
-   * behind a plane of the world; null leaves out nothing.
-   */
+  /** Leave out what of skin and hair, and with `flesh` of wet flesh, lies behind a plane of the world; null: nothing. */
   clip(plane: Plane | null, flesh = false): void {
     this.clipped = plane === null ? [] : [plane];
     this.fleshClipped = flesh;

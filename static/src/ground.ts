@@ -1,6 +1,8 @@
-// The skin that goes, as what lies over it is tied to it.
+// What a face carries along: the skin that goes, and bone on the jaw, with whatever is tied to either.
 
 import type { Face } from './face';
+import type { JawPose, Ride } from './riding';
+import { rideOf } from './riding';
 import type { Point } from './vector';
 
 /** What muscles and their handles are tied to. */
@@ -9,15 +11,26 @@ export interface Ground {
   rest: Float32Array;
   /** How far a streamed point has moved [m]. */
   displacement(point: number): readonly [number, number, number];
+  /** The jaw as it stands. */
+  jaw(): JawPose;
 }
 
-/** How far the skin over a place has gone from rest; the place as it is at rest. All in mm, head frame. */
-export type Shift = (place: Point) => Point;
+/** How a face, as it stands, carries what is tied to it. All in mm, head frame. */
+export interface Carrier {
+  /** How far the skin over a place has gone from rest; the place as it is at rest. */
+  skin: (place: Point) => Point;
+  /** Where bone goes that rides the jaw by a share of it. */
+  bone: (share: number) => Ride;
+}
 
 const MILLIMETRES = 1000;
 
 export function groundOf(face: Face): Ground {
-  return { rest: face.restPoints, displacement: (at) => face.displacement(at) };
+  return {
+    rest: face.restPoints,
+    displacement: (at) => face.displacement(at),
+    jaw: () => face.jaw,
+  };
 }
 
 /** The streamed point nearest to a place at rest [mm, head frame]. */
@@ -32,9 +45,12 @@ export function nearestPoint({ rest }: Ground, [x, y, z]: Point): number {
   return found;
 }
 
-export function shiftOver(ground: Ground): Shift {
-  return (place) => {
-    const [x, y, z] = ground.displacement(nearestPoint(ground, place));
-    return [x * MILLIMETRES, y * MILLIMETRES, z * MILLIMETRES];
+export function carrierOf(ground: Ground): Carrier {
+  return {
+    skin: (place) => {
+      const [x, y, z] = ground.displacement(nearestPoint(ground, place));
+      return [x * MILLIMETRES, y * MILLIMETRES, z * MILLIMETRES];
+    },
+    bone: (share) => rideOf(ground.jaw(), share),
   };
 }

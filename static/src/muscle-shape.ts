@@ -25,6 +25,8 @@ export interface MuscleForm {
   angle?: number;
   strength?: number;
   force_scale?: number;
+  /** By how much of the jaw its bone end rides, 0 to 1. */
+  jaw_share?: number;
 }
 
 /** A line through the flesh. */
@@ -34,6 +36,8 @@ export interface Fibre {
   follows: number[];
   /** Half its thickness at each point [mm]. */
   radii: number[];
+  /** By how much of the jaw its bone end rides. */
+  rides: number;
 }
 
 const STEPS = 12;
@@ -52,7 +56,7 @@ const THICK = 1.25;
 export function fibresOf(muscle: MuscleForm): Fibre[] {
   switch (muscle.kind) {
     case 'linear':
-      return spindle(muscle.attachment as Point, muscle.insertion as Point);
+      return spindle(muscle.attachment as Point, muscle.insertion as Point, muscle.jaw_share ?? 0);
     case 'sheet':
       return sheet(muscle.attachment as readonly Point[], muscle.insertion as readonly Point[]);
     case 'sphincter':
@@ -62,7 +66,7 @@ export function fibresOf(muscle: MuscleForm): Fibre[] {
   }
 }
 
-function spindle(attachment: Point, insertion: Point): Fibre[] {
+function spindle(attachment: Point, insertion: Point, rides: number): Fibre[] {
   const along = unit(minus(insertion, attachment));
   const aside = unit(cross(outward(between(attachment, insertion, 0.5)), along));
   return Array.from({ length: SPINDLE }, (_, index) => {
@@ -70,6 +74,7 @@ function spindle(attachment: Point, insertion: Point): Fibre[] {
     return straight(
       plus(attachment, aside, (off * SPREAD_AT_BONE) / 2),
       plus(insertion, aside, (off * SPREAD_AT_SKIN) / 2),
+      rides,
     );
   });
 }
@@ -78,17 +83,18 @@ function sheet(attachment: readonly Point[], insertion: readonly Point[]): Fibre
   const count = Math.max(3, Math.round(lengthOf(insertion) / SHEET_GAP) + 1);
   return Array.from({ length: count }, (_, index) => {
     const share = index / (count - 1);
-    return straight(onLine(attachment, share), onLine(insertion, share));
+    return straight(onLine(attachment, share), onLine(insertion, share), 0);
   });
 }
 
 /** A fibre that swells towards its middle. */
-function straight(from: Point, to: Point): Fibre {
+function straight(from: Point, to: Point, rides: number): Fibre {
   const shares = Array.from({ length: STEPS + 1 }, (_, index) => index / STEPS);
   return {
     points: shares.map((share) => bowed(from, to, share)),
     follows: shares,
     radii: shares.map((share) => THIN + (THICK - THIN) * Math.sin(Math.PI * share) ** 0.8),
+    rides,
   };
 }
 
@@ -111,6 +117,7 @@ function ring({ plane, normal, semi_major: a, semi_minor: b }: MuscleForm, share
     ),
     follows: angles.map(() => 1),
     radii: angles.map(() => 0.8),
+    rides: 0,
   };
 }
 

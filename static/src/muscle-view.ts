@@ -12,8 +12,12 @@ import type { Ground } from './ground';
 import { nearestPoint } from './ground';
 import type { Fibre, MuscleForm, Point } from './muscle-shape';
 import { outward } from './muscle-shape';
+import type { Ride } from './riding';
+import { rideOf, STAY } from './riding';
+import { minus, plus } from './vector';
 
 const METRES = 1e-3;
+const MILLIMETRES = 1e3;
 const SIDES = 6;
 /** Drawn after skin, corneas and hair. */
 const LAST = 9;
@@ -26,12 +30,16 @@ interface Vertex {
   /** Streamed point that it goes with. */
   tied: number;
   follows: number;
+  /** By how much of the jaw the bone end of its fibre rides, and where the skin end is at rest [mm]. */
+  rides: number;
+  end: Point;
 }
 
 export class MuscleView {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly names: string[];
   private readonly vertices: Vertex[] = [];
+  /** [mm] */
   private readonly rest: Float32Array;
   private readonly shown: Float32Array;
   private wanted: Float32Array;
@@ -85,17 +93,23 @@ export class MuscleView {
     return goesOn;
   }
 
-  /** Go where the skin has gone. */
+  /** Go where skin and jaw have gone. */
   move(): void {
     const positions = this.mesh.geometry.getAttribute('position');
-    this.vertices.forEach(({ tied, follows }, at) => {
+    const jaw = this.ground.jaw();
+    const known = new Map<number, Ride>();
+    this.vertices.forEach(({ tied, follows, rides, end }, at) => {
+      const ride = known.get(rides) ?? rideOf(jaw, rides);
+      known.set(rides, ride);
+      let place: Point = [this.rest[3 * at]!, this.rest[3 * at + 1]!, this.rest[3 * at + 2]!];
       const [x, y, z] = this.ground.displacement(tied);
-      positions.setXYZ(
-        at,
-        this.rest[3 * at]! + follows * x,
-        this.rest[3 * at + 1]! + follows * y,
-        this.rest[3 * at + 2]! + follows * z,
-      );
+      let besides: Point = [MILLIMETRES * x, MILLIMETRES * y, MILLIMETRES * z];
+      if (ride !== STAY) {
+        place = ride.to(place);
+        besides = minus(plus(end, besides), ride.to(end));
+      }
+      const [right, up, out] = plus(place, besides, follows);
+      positions.setXYZ(at, METRES * right, METRES * up, METRES * out);
     });
     positions.needsUpdate = true;
   }
@@ -107,23 +121,24 @@ export class MuscleView {
   }
 
   private addTube(
-    { points, follows, radii }: Fibre,
+    { points, follows, radii, rides }: Fibre,
     muscle: number,
     built: { positions: number[]; normals: number[]; index: number[] },
   ): void {
     const first = this.vertices.length;
-    // All of a straight fibre goes with its skin end; each point of a ring with the skin over it.
+    // Each point of a ring goes with the skin over it; all of a straight fibre with its bone, and with its skin end.
     const isRing = follows[0] === 1;
-    const end = nearestPoint(this.ground, points.at(-1)!);
+    const end = points.at(-1)!;
+    const under = nearestPoint(this.ground, end);
     points.forEach((point, at) => {
-      const tied = isRing ? nearestPoint(this.ground, point) : end;
+      const tied = isRing ? nearestPoint(this.ground, point) : under;
       const [out, aside] = frameAt(points, at);
       for (let side = 0; side < SIDES; side++) {
         const angle = (2 * Math.PI * side) / SIDES;
         const normal = out.map((o, axis) => o * Math.cos(angle) + aside[axis]! * Math.sin(angle));
         built.normals.push(...normal);
-        built.positions.push(...point.map((p, axis) => (p + radii[at]! * normal[axis]!) * METRES));
-        this.vertices.push({ muscle, tied, follows: follows[at]! });
+        built.positions.push(...point.map((p, axis) => p + radii[at]! * normal[axis]!));
+        this.vertices.push({ muscle, tied, follows: follows[at]!, rides, end });
       }
       if (at === 0) return;
       for (let side = 0; side < SIDES; side++) {

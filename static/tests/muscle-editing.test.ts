@@ -3,12 +3,19 @@
 import { describe, expect, it } from 'vitest';
 import type { MuscleEditingParts } from '../src/app/muscle-editing';
 import { MuscleEditing } from '../src/app/muscle-editing';
-import { carriedFibre, carriedHandles, carriedZone, ledAsCarried } from '../src/inside/carried';
+import {
+  atRest,
+  carriedFibre,
+  carriedHandles,
+  carriedZone,
+  ledAsCarried,
+} from '../src/inside/carried';
 import { handlesOf, led, mirroredChange, placed, twinOf, zoneOf } from '../src/inside/editing';
-import { nearestPoint, shiftOver } from '../src/ground';
+import { carrierOf, nearestPoint } from '../src/ground';
 import { Newest } from '../src/inside/newest';
 import type { MuscleForm, Point } from '../src/muscle-shape';
 import { fibresOf } from '../src/muscle-shape';
+import { rideOf, SHUT } from '../src/riding';
 import { ViewerState } from '../src/state/viewer.svelte';
 
 const LINEAR: MuscleForm = {
@@ -136,33 +143,34 @@ describe('handles on a face that moves', () => {
   const ground = {
     rest: new Float32Array([30, -60, 60, 0, 90, 90]),
     displacement: (point: number): Point => (point === 0 ? [0.002, 0.01, 0] : [0, 0, 0]),
+    jaw: () => SHUT,
   };
-  const shift = shiftOver(ground);
+  const carrier = carrierOf(ground);
   const drawnOf = (muscle: MuscleForm, id: string): Point =>
-    carriedHandles(muscle, shift).find((handle) => handle.id === id)!.drawn;
+    carriedHandles(muscle, carrier).find((handle) => handle.id === id)!.drawn;
 
   it('know how far the skin over them has gone', () => {
     expect(nearestPoint(ground, [1, 80, 70])).toBe(1);
-    expect(shift([29, -50, 60])).toEqual([2, 10, 0]);
+    expect(carrier.skin([29, -50, 60])).toEqual([2, 10, 0]);
   });
 
   it('stand where its fibres end, and on the bone where those begin', () => {
-    const fibres = fibresOf(LINEAR).map((fibre) => carriedFibre(fibre, shift));
+    const fibres = fibresOf(LINEAR).map((fibre) => carriedFibre(fibre, carrier));
     const middle = fibres[(fibres.length - 1) / 2]!;
     expect(drawnOf(LINEAR, 'insertion')).toEqual([32, -50, 60]);
     middle.at(-1)!.forEach((value, axis) => {
       expect(value).toBeCloseTo(drawnOf(LINEAR, 'insertion')[axis]!);
     });
     expect(drawnOf(LINEAR, 'attachment')).toEqual(middle[0]);
-    expect(carriedHandles(LINEAR, shift).map(({ place }) => place)).toEqual(
+    expect(carriedHandles(LINEAR, carrier).map(({ place }) => place)).toEqual(
       handlesOf(LINEAR).map(({ place }) => place),
     );
-    expect(carriedZone(LINEAR, shift)[0]).toEqual([LINEAR.attachment, [32, -50, 60]]);
+    expect(carriedZone(LINEAR, carrier)[0]).toEqual([LINEAR.attachment, [32, -50, 60]]);
   });
 
   it('go with the skin over a ring, and at either end of a sheet', () => {
     expect(drawnOf(RING, 'center')).toEqual([2, -60, 110]);
-    expect(carriedZone(RING, shift)[0]![0]).toEqual([42, -60, 100]);
+    expect(carriedZone(RING, carrier)[0]![0]).toEqual([42, -60, 100]);
     expect(drawnOf(SHEET, 'insertion.1')).toEqual([20, 20, 90]);
     const low: MuscleForm = {
       ...SHEET,
@@ -177,7 +185,7 @@ describe('handles on a face that moves', () => {
 
   it('that are led to where they are drawn change nothing', () => {
     const led = (muscle: MuscleForm, id: string) =>
-      ledAsCarried(muscle, id, through(drawnOf(muscle, id)), shift);
+      ledAsCarried(muscle, id, through(drawnOf(muscle, id)), carrier);
     const { radius } = led(LINEAR, 'radius');
     expect(radius).toBeCloseTo(70);
     expect(led(RING, 'semi_minor')).toEqual({ semi_minor: 20 });
@@ -186,25 +194,84 @@ describe('handles on a face that moves', () => {
 
   it('keep a muscle that reaches beyond its insertion at rest', () => {
     // The face has brought its ends together: 42 mm, and 50 at rest.
-    const { radius } = ledAsCarried(LINEAR, 'radius', through(drawnOf(LINEAR, 'insertion')), shift);
+    const { radius } = ledAsCarried(
+      LINEAR,
+      'radius',
+      through(drawnOf(LINEAR, 'insertion')),
+      carrier,
+    );
     expect(radius).toBe(51);
+  });
+});
+
+describe('a muscle of the mandible on a face with its jaw open', () => {
+  const LOW: MuscleForm = {
+    name: 'depressor_anguli_oris.L',
+    kind: 'linear',
+    attachment: [30, -100, 60],
+    insertion: [30, -60, 60],
+    radius: 60,
+    angle: 20,
+    jaw_share: 0.8,
+  };
+  const jaw = {
+    hinge: [0, -30, 4],
+    offset: [0, 0, 10],
+    quaternion: [Math.sin(0.25), 0, 0, Math.cos(0.25)],
+  } as const;
+  const carrier = carrierOf({
+    rest: new Float32Array([30, -60, 60, 0, 90, 90]),
+    displacement: (point) => (point === 0 ? [0, -0.01, 0] : [0, 0, 0]),
+    jaw: () => jaw,
+  });
+  const lowered = rideOf(jaw, 0.8).to(LOW.attachment as Point);
+  const handleOf = (id: string) => carriedHandles(LOW, carrier).find((handle) => handle.id === id)!;
+
+  it('has its bone end and its fibres where the jaw has carried them', () => {
+    expect(lowered[1]).toBeLessThan(-115);
+    expect(handleOf('attachment').drawn).toEqual(lowered);
+    expect(handleOf('attachment').place).toEqual(LOW.attachment);
+    expect(handleOf('insertion').drawn).toEqual([30, -70, 60]);
+    expect(carriedZone(LOW, carrier)[0]).toEqual([lowered, [30, -70, 60]]);
+    const fibres = fibresOf(LOW).map((fibre) => carriedFibre(fibre, carrier));
+    const middle = fibres[2]!;
+    middle[0]!.forEach((value, axis) => {
+      expect(value).toBeCloseTo(lowered[axis]!);
+    });
+    middle.at(-1)!.forEach((value, axis) => {
+      expect(value).toBeCloseTo([30, -70, 60][axis]!);
+    });
+  });
+
+  it('is edited as it is at rest', () => {
+    const place = (id: string, at: Point) => atRest(LOW, handleOf(id), at, carrier);
+    place('attachment', lowered).forEach((value, axis) => {
+      expect(value).toBeCloseTo((LOW.attachment as Point)[axis]!);
+    });
+    expect(place('insertion', [31, -72, 60])).toEqual([31, -62, 60]);
+    const drawn = handleOf('radius').drawn;
+    expect(ledAsCarried(LOW, 'radius', through(drawn), carrier).radius).toBeCloseTo(60, 0);
   });
 });
 
 describe('a muscle in hand', () => {
   const RIGHT: MuscleForm = { ...LINEAR, ...mirroredChange(LINEAR), name: 'zygomatic_major.R' };
-  const inHand = (): { viewer: ViewerState; editing: MuscleEditing; sent: string[] } => {
+  const inHand = () => {
     const viewer = new ViewerState();
     const sent: string[] = [];
+    const changes: object[] = [];
     const editing = new MuscleEditing({
       viewer,
       scene: { invalidate: () => undefined },
       layers: { load: () => Promise.resolve() },
-      patch: (muscle: string) => Promise.resolve(sent.push(muscle)),
+      patch: (muscle: string, change: object) => {
+        changes.push(change);
+        return Promise.resolve(sent.push(muscle));
+      },
     } as unknown as MuscleEditingParts);
     editing.use([LINEAR, RIGHT, RING], true);
     editing.choose(LINEAR.name);
-    return { viewer, editing, sent };
+    return { viewer, editing, sent, changes };
   };
 
   it('is moved alone, or with its twin, and undone as it was moved', () => {
@@ -223,6 +290,17 @@ describe('a muscle in hand', () => {
     expect(viewer.within.changed).toEqual([]);
     expect(viewer.within.edits).toBe(0);
     expect(sent).toContain(LINEAR.name);
+  });
+
+  it('rides the jaw at once by what its bone does there, which the service finds by itself', () => {
+    const { viewer, editing, changes } = inHand();
+    editing.edit({ attachment: [40, -90, 60], jaw_share: 0.9 }, 'attachment');
+    expect(viewer.within.forms[LINEAR.name]!.jaw_share).toBe(0.9);
+    expect(changes).toEqual([{ attachment: [40, -90, 60] }]);
+    editing.use([{ ...LINEAR, jaw_share: 0.1 }, RIGHT, RING], true);
+    editing.edit({ jaw_share: 0.9, radius: 80 }, 'radius');
+    editing.undo();
+    expect(viewer.within.forms[LINEAR.name]!.jaw_share).toBe(0.1);
   });
 
   it('is put back on both sides where both are moved, and that is undone', () => {

@@ -4,6 +4,7 @@ import { describe, expect, it } from 'vitest';
 import { fibresOn } from '../src/draped';
 import type { MuscleForm } from '../src/muscle-shape';
 import { fibresOf } from '../src/muscle-shape';
+import { SHUT } from '../src/riding';
 
 describe('fibresOf', () => {
   it('draws a spindle from bone to skin, thickest between, never deeper than its ends', () => {
@@ -68,6 +69,7 @@ describe('fibresOf', () => {
     const ground = {
       rest: new Float32Array(rest),
       displacement: (): [number, number, number] => [0, 0, 0],
+      jaw: () => SHUT,
     };
     const ring: MuscleForm = {
       name: 'orbicularis_oris',

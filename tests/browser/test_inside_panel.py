@@ -112,6 +112,30 @@ def test_a_muscle_follows_its_handle_and_the_face_the_muscle(opened: playwright_
     playwright_api.expect(page.get_by_role("button", name="Reset muscle")).to_be_disabled()
 
 
+def test_bone_ends_ride_the_open_jaw_and_are_edited_at_rest(
+    opened: playwright_api.Page, url: str
+) -> None:
+    page = opened
+    page.get_by_role("combobox", name="Muscle in hand").select_option("depressor_anguli_oris.L")
+    shut = handles(page)
+    field = page.get_by_role("spinbutton", name="Attachment y")
+    attachment = float(field.input_value())
+    address = f"{url}/api/sessions/{page.evaluate('() => window.__viewer.session')}/controls"
+    tick = page.evaluate("() => window.__viewer.tick")
+    page.request.patch(address, data={"jaw": {"pitch": 24}, "fade": 0.1})
+    settle(page, tick)
+    drawn = handles(page)
+    assert drawn["attachment"][1] - shut["attachment"][1] > 10, "down with the jaw"
+    page.mouse.move(*drawn["attachment"])
+    page.mouse.down()
+    page.mouse.move(*drawn["attachment"])
+    page.mouse.up()
+    assert float(field.input_value()) == pytest.approx(attachment, abs=0.3), "as it is at rest"
+    page.get_by_role("button", name="Undo edit").click()
+    page.request.patch(address, data={"jaw": {"pitch": 0}, "fade": 0.1})
+    until_edits_are_over(page)
+
+
 def test_numbers_edit_a_muscle_and_a_new_unit_is_saved_with_it(
     opened: playwright_api.Page, url: str
 ) -> None:

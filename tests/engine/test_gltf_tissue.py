@@ -23,6 +23,10 @@ def test_sheets_and_springs_are_those_of_the_model(tmp_path: Path) -> None:
         rest = model.layers.nodes[sheet * n : (sheet + 1) * n]
         np.testing.assert_allclose(glb.positions(name) * 1000, rest, atol=1e-4)
     np.testing.assert_allclose(glb.positions("bone") * 1000, model.layers.bone, atol=1e-4)
+    (bone,) = (mesh for mesh in glb.json["meshes"] if mesh["name"] == "bone")
+    (primitive,) = bone["primitives"]
+    rides = glb.array(primitive["attributes"]["_JAW"])
+    np.testing.assert_allclose(rides, rig.head.jaw_weight[:n], atol=1e-6)
     told: dict[str, list[tuple[int, int]]] = {"structural": [], "shear": [], "tie": []}
     for node in glb.json["nodes"]:
         extras = node["extras"]

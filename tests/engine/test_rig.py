@@ -178,6 +178,10 @@ def test_the_description_is_plain_data(standard_rig, paper_rig):
         data = json.loads(json.dumps(rig.describe(), allow_nan=False))
         assert data["id"] == rig.id
         assert len(data["muscles"]) == len(rig.muscles)
+        share = {muscle["name"]: muscle["jaw_share"] for muscle in data["muscles"]}
+        assert share["mentalis.L"] == share["mentalis.R"] == 1.0
+        assert share["zygomatic_major.L"] == share["frontalis_medial.L"] == 0.0
+        assert 0.2 < share["orbicularis_oris"] < 0.8
 
 
 def test_commands_out_of_range_are_refused(standard_rig):

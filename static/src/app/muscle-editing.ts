@@ -2,15 +2,16 @@
 
 import { fibresOn } from '../draped';
 import type { Face } from '../face';
-import type { Ground, Shift } from '../ground';
-import { groundOf, shiftOver } from '../ground';
+import type { Carrier, Ground } from '../ground';
+import { carrierOf, groundOf } from '../ground';
 import type { CarriedHandle } from '../inside/carried';
-import { carriedFibre, ledAsCarried } from '../inside/carried';
-import { mirroredChange, onPlane, placed, twinOf } from '../inside/editing';
+import { atRest, carriedFibre, ledAsCarried } from '../inside/carried';
+import { fieldsOf, formOf, mirroredChange, onPlane, placed, twinOf } from '../inside/editing';
 import { HandleView } from '../inside/handle-view';
 import { Newest } from '../inside/newest';
 import type { MuscleForm } from '../muscle-shape';
 import { fibresOf } from '../muscle-shape';
+import { SHUT } from '../riding';
 import type { Scene } from '../scene';
 import type { ViewerState } from '../state/viewer.svelte';
 import type { Point } from '../vector';
@@ -20,22 +21,19 @@ import type { Overlay } from './on-stage';
 
 type Change = Partial<MuscleForm>;
 
-/** What an edit may change; of each kind of muscle some are there. */
-const FIELDS = [
-  'attachment',
-  'insertion',
-  'center',
-  'radius',
-  'angle',
-  'semi_major',
-  'semi_minor',
-  'strength',
-  'force_scale',
-] as const;
 /** Edits of one field that follow each other within this are undone together [ms]. */
 const ONE_GESTURE_MS = 900;
 const MOST_KEPT = 100;
-const NO_GROUND: Ground = { rest: new Float32Array(), displacement: () => [0, 0, 0] };
+const NO_GROUND: Ground = {
+  rest: new Float32Array(),
+  displacement: () => [0, 0, 0],
+  jaw: () => SHUT,
+};
+
+/** A place at rest, and what of a muscle follows from where it is. */
+interface Touched extends Pick<MuscleForm, 'jaw_share'> {
+  place: Point;
+}
 
 export interface MuscleEditingParts {
   viewer: ViewerState;
@@ -48,8 +46,7 @@ export interface MuscleEditingParts {
 export class MuscleEditing implements Overlay {
   private face: Face | null = null;
   private ground: Ground = NO_GROUND;
-  /** How far the skin of the face has gone. */
-  private shift: Shift = () => [0, 0, 0];
+  private carrier: Carrier = carrierOf(NO_GROUND);
   private view: HandleView | null = null;
   /** As the service has them, and as they were when the face was opened. */
   private accepted: Record<string, MuscleForm> = {};
@@ -76,7 +73,7 @@ export class MuscleEditing implements Overlay {
     this.view = null;
     this.face = face;
     this.ground = face === null ? NO_GROUND : groundOf(face);
-    this.shift = face === null ? () => [0, 0, 0] : shiftOver(this.ground);
+    this.carrier = carrierOf(this.ground);
     this.refresh();
   }
 
@@ -127,7 +124,7 @@ export class MuscleEditing implements Overlay {
     const kept = this.before.pop();
     this.parts.viewer.within.edits = this.before.length;
     this.gesture = '';
-    for (const form of kept ?? []) this.change(form.name, fieldsOf(form));
+    for (const form of kept ?? []) this.change(form.name, formOf(form));
   }
 
   reset(): void {
@@ -137,11 +134,11 @@ export class MuscleEditing implements Overlay {
     const moved = this.moved(form);
     this.keep(moved);
     this.gesture = '';
-    for (const { name } of moved) this.change(name, fieldsOf(this.first[name] ?? {}));
+    for (const { name } of moved) this.change(name, formOf(this.first[name] ?? {}));
   }
 
   move(): void {
-    this.view?.move(this.shift);
+    this.view?.move(this.carrier);
   }
 
   step(): boolean {
@@ -175,7 +172,7 @@ export class MuscleEditing implements Overlay {
     if (this.view === null && !this.show()) return '';
     for (const form of Object.values(viewer.within.forms)) {
       for (const fibre of fibresOn(form, this.ground)) {
-        for (const point of carriedFibre(fibre, this.shift)) {
+        for (const point of carriedFibre(fibre, this.carrier)) {
           const at = scene.sight.screenPlace(this.view!.world(point));
           const away = Math.hypot(at.x - x, at.y - y);
           if (away < least && scene.sight.facing(this.view!.world(point)))
@@ -188,8 +185,8 @@ export class MuscleEditing implements Overlay {
 
   /** A pointer takes a handle at a place of the page. */
   grab(handle: CarriedHandle, x: number, y: number): void {
-    const hit = this.touched(handle, x, y);
-    this.grip = hit === null ? [0, 0, 0] : minus(handle.place, hit);
+    const touched = this.touched(handle, x, y);
+    this.grip = touched === null ? [0, 0, 0] : minus(handle.place, touched.place);
   }
 
   /** And leads it to another. */
@@ -199,36 +196,44 @@ export class MuscleEditing implements Overlay {
     if (form === undefined) return;
     if (handle.along === 'line' || handle.along === 'arc') {
       const ray = this.parts.scene.sight.rayIn(this.view!.group, x, y);
-      this.edit(ledAsCarried(form, handle.id, ray, this.shift), handle.id);
+      this.edit(ledAsCarried(form, handle.id, ray, this.carrier), handle.id);
       return;
     }
-    const hit = this.touched(handle, x, y);
-    if (hit !== null) this.edit(placed(form, handle.id, plus(hit, this.grip)), handle.id);
+    const touched = this.touched(handle, x, y);
+    if (touched === null) return;
+    const { place, ...share } = touched;
+    this.edit({ ...placed(form, handle.id, plus(place, this.grip)), ...share }, handle.id);
   }
 
-  /** Where a pointer touches what the handle goes along, as that is at rest [mm]. */
-  private touched(handle: CarriedHandle, x: number, y: number): Point | null {
-    const { scene, layers } = this.parts;
+  /** Where a pointer touches what the handle goes along, as that is at rest [mm]; of a linear muscle's bone how it rides. */
+  private touched(handle: CarriedHandle, x: number, y: number): Touched | null {
+    const { scene, layers, viewer } = this.parts;
+    const form = viewer.within.forms[viewer.within.muscle];
+    if (form === undefined) return null;
     if (handle.along === 'skin') {
       const hit = scene.sight.hit(this.face!.skin, x, y);
-      if (hit !== null) return this.face!.restOf(hit.corners, hit.weights);
+      if (hit !== null) return { place: this.face!.restOf(hit.corners, hit.weights) };
     }
     const skull = handle.along === 'bone' ? layers.skull : null;
     if (skull !== null) {
-      const hit = scene.sight.hit(skull, x, y);
-      if (hit !== null) return hit.place;
+      skull.stand(this.ground.jaw());
+      const hit = scene.sight.hit(skull.mesh, x, y);
+      if (hit !== null) {
+        const { place, share } = skull.under(hit);
+        return form.kind === 'linear' ? { place, jaw_share: share } : { place };
+      }
     }
     // Beside the head, or before its layers are there: along the picture, through where it is drawn.
     const ray = scene.sight.rayIn(this.view!.group, x, y);
     const hit = onPlane(ray, handle.drawn, ray.direction);
-    return hit === null ? null : plus(hit, minus(handle.place, handle.drawn));
+    return hit === null ? null : { place: atRest(form, handle, hit, this.carrier) };
   }
 
   private change(muscle: string, change: Change): void {
     const form = this.parts.viewer.within.forms[muscle];
     if (form === undefined) return;
     this.put(muscle, { ...form, ...change });
-    this.sending.put(muscle, change);
+    this.sending.put(muscle, fieldsOf(change));
   }
 
   private put(muscle: string, form: MuscleForm): void {
@@ -274,12 +279,7 @@ export class MuscleEditing implements Overlay {
       this.view = new HandleView();
       this.face.carry(this.view.group);
     }
-    this.view.show(within.forms[within.muscle] ?? null, this.shift);
+    this.view.show(within.forms[within.muscle] ?? null, this.carrier);
     return true;
   }
-}
-
-function fieldsOf(form: Change): Change {
-  const there = FIELDS.filter((field) => form[field] !== undefined);
-  return Object.fromEntries(there.map((field) => [field, form[field]]));
 }

@@ -1,6 +1,6 @@
-// A muscle as the moving face carries it: bone ends where they are, skin ends where the skin has gone. All in mm, head frame.
+// A muscle as the moving face carries it: bone ends where the jaw has taken them, skin ends where the skin has gone. All in mm, head frame.
 
-import type { Shift } from '../ground';
+import type { Carrier } from '../ground';
 import type { Fibre, MuscleForm, Point } from '../muscle-shape';
 import { minus, plus } from '../vector';
 import type { Handle, Ray } from './editing';
@@ -12,26 +12,29 @@ export interface CarriedHandle extends Handle {
 }
 
 /** Its handles: `place` on the face at rest, which edits are of, `drawn` on the face as it is. */
-export function carriedHandles(muscle: MuscleForm, shift: Shift): CarriedHandle[] {
+export function carriedHandles(muscle: MuscleForm, by: Carrier): CarriedHandle[] {
   if (isRing(muscle))
-    return handlesOf(muscle).map((handle) => ({ ...handle, drawn: gone(handle.place, shift) }));
-  const drawn = handlesOf(carried(muscle, shift));
+    return handlesOf(muscle).map((handle) => ({ ...handle, drawn: gone(handle.place, by) }));
+  const drawn = handlesOf(carried(muscle, by));
   return handlesOf(muscle).map((handle, at) => ({ ...handle, drawn: drawn[at]!.place }));
 }
 
 /** The lines that show where it acts, on the face as it is. */
-export function carriedZone(muscle: MuscleForm, shift: Shift): Point[][] {
+export function carriedZone(muscle: MuscleForm, by: Carrier): Point[][] {
   return isRing(muscle)
-    ? zoneOf(muscle).map((line) => line.map((point) => gone(point, shift)))
-    : zoneOf(carried(muscle, shift));
+    ? zoneOf(muscle).map((line) => line.map((point) => gone(point, by)))
+    : zoneOf(carried(muscle, by));
 }
 
 /** The points of one of its fibres, on the face as it is. */
-export function carriedFibre({ points, follows }: Fibre, shift: Shift): Point[] {
-  // All of a straight fibre goes with its skin end; each point of a ring with the skin over it.
-  if (follows[0] === 1) return points.map((point) => gone(point, shift));
-  const end = shift(points.at(-1)!);
-  return points.map((point, at) => plus(point, end, follows[at]!));
+export function carriedFibre({ points, follows, rides }: Fibre, by: Carrier): Point[] {
+  // Each point of a ring goes with the skin over it.
+  if (follows[0] === 1) return points.map((point) => gone(point, by));
+  // All of a straight fibre goes with its bone, and by and by with what its skin end does besides.
+  const end = points.at(-1)!;
+  const { to } = by.bone(rides);
+  const besides = minus(gone(end, by), to(end));
+  return points.map((point, at) => plus(to(point), besides, follows[at]!));
 }
 
 /** What it becomes at rest when the handle of a line or an arc, where that is drawn, is led by a ray. */
@@ -39,30 +42,48 @@ export function ledAsCarried(
   muscle: MuscleForm,
   id: string,
   ray: Ray,
-  shift: Shift,
+  by: Carrier,
 ): Partial<MuscleForm> {
-  if (!isRing(muscle)) return led(carried(muscle, shift), id, ray, muscle);
+  if (!isRing(muscle)) return led(carried(muscle, by), id, ray, muscle);
   const handle = handlesOf(muscle).find((each) => each.id === id)!;
-  return led(muscle, id, { ...ray, origin: minus(ray.origin, shift(handle.place)) });
+  return led(muscle, id, { ...ray, origin: minus(ray.origin, by.skin(handle.place)) });
+}
+
+/** Where what is drawn at a place, along with a handle, lies on the face at rest. */
+export function atRest(
+  muscle: MuscleForm,
+  handle: CarriedHandle,
+  place: Point,
+  by: Carrier,
+): Point {
+  if (handle.along === 'bone') return by.bone(muscle.jaw_share ?? 0).from(place);
+  return plus(place, minus(handle.place, handle.drawn));
 }
 
 function isRing({ kind }: MuscleForm): boolean {
   return kind === 'sphincter';
 }
 
-function carried(muscle: MuscleForm, shift: Shift): MuscleForm {
-  const { insertion } = muscle;
-  if (insertion === undefined) return muscle;
-  const ends = isLine(insertion)
-    ? insertion.map((end) => gone(end, shift))
-    : gone(insertion, shift);
-  return { ...muscle, insertion: ends };
+function carried(muscle: MuscleForm, by: Carrier): MuscleForm {
+  const { attachment, insertion, jaw_share: share = 0 } = muscle;
+  if (attachment === undefined || insertion === undefined) return muscle;
+  const { to } = by.bone(share);
+  return {
+    ...muscle,
+    attachment: each(attachment, to),
+    insertion: each(insertion, (end) => gone(end, by)),
+  };
+}
+
+/** An end of a muscle, which is a point or a line of them, somewhere else. */
+function each(ends: Point | readonly Point[], to: (end: Point) => Point): Point | Point[] {
+  return isLine(ends) ? ends.map(to) : to(ends);
 }
 
 function isLine(ends: Point | readonly Point[]): ends is readonly Point[] {
   return Array.isArray(ends[0]);
 }
 
-function gone(place: Point, shift: Shift): Point {
-  return plus(place, shift(place));
+function gone(place: Point, by: Carrier): Point {
+  return plus(place, by.skin(place));
 }

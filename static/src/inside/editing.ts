@@ -34,6 +34,19 @@ const ARC_STEPS = 24;
 const RING_STEPS = 48;
 const DEGREES = 180 / Math.PI;
 
+/** What an edit may change; of each kind of muscle some are there. */
+const FIELDS = [
+  'attachment',
+  'insertion',
+  'center',
+  'radius',
+  'angle',
+  'semi_major',
+  'semi_minor',
+  'strength',
+  'force_scale',
+] as const;
+
 export function handlesOf(muscle: MuscleForm): Handle[] {
   const handle = (id: string, label: string, place: Point, along: Along): Handle => ({
     id,
@@ -165,6 +178,18 @@ export function mirroredChange(change: Change): Change {
     return [-x!, y, z];
   };
   return Object.fromEntries(Object.entries(change).map(([name, value]) => [name, flip(value)]));
+}
+
+/** What of a change is an edit. */
+export function fieldsOf(form: Change): Change {
+  const there = FIELDS.filter((field) => form[field] !== undefined);
+  return Object.fromEntries(there.map((field) => [field, form[field]]));
+}
+
+/** What edits change of a form, and what follows from that. */
+export function formOf(form: Change): Change {
+  const { jaw_share } = form;
+  return { ...fieldsOf(form), ...(jaw_share === undefined ? {} : { jaw_share }) };
 }
 
 /** Where a ray meets the plane through a point; null where they are parallel. */

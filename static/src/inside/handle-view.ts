@@ -5,7 +5,7 @@ import { Color, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3 } from '
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
-import type { Shift } from '../ground';
+import type { Carrier } from '../ground';
 import type { MuscleForm } from '../muscle-shape';
 import type { CarriedHandle } from './carried';
 import { carriedHandles, carriedZone } from './carried';
@@ -50,12 +50,12 @@ export class HandleView {
   }
 
   /** Show the handles of a muscle, carried by the face as it stands; of none, nothing. */
-  show(muscle: MuscleForm | null, shift: Shift): void {
+  show(muscle: MuscleForm | null, by: Carrier): void {
     this.muscle = muscle;
     this.clear();
     this.zone.geometry.dispose();
     this.zone.geometry = new LineSegmentsGeometry();
-    this.handles = muscle === null ? [] : carriedHandles(muscle, shift);
+    this.handles = muscle === null ? [] : carriedHandles(muscle, by);
     for (const { along } of this.handles) {
       for (const [geometry, color, order] of [
         [this.rim, '#15181c', LAST + 1],
@@ -72,22 +72,22 @@ export class HandleView {
         this.balls.add(mesh);
       }
     }
-    this.place(shift);
+    this.place(by);
   }
 
   /** The face has moved: go where it has carried the muscle. */
-  move(shift: Shift): void {
+  move(by: Carrier): void {
     if (this.muscle === null) return;
-    this.handles = carriedHandles(this.muscle, shift);
-    this.place(shift);
+    this.handles = carriedHandles(this.muscle, by);
+    this.place(by);
   }
 
-  private place(shift: Shift): void {
+  private place(by: Carrier): void {
     this.balls.children.forEach((ball, at) => {
       const { drawn } = this.handles[Math.floor(at / BALLS)]!;
       ball.position.set(drawn[0] * METRES, drawn[1] * METRES, drawn[2] * METRES);
     });
-    const lines = this.muscle === null ? [] : carriedZone(this.muscle, shift);
+    const lines = this.muscle === null ? [] : carriedZone(this.muscle, by);
     const places = lines.flatMap((line) =>
       line.slice(1).flatMap((point, at) => [...line[at]!, ...point]),
     );

@@ -13,6 +13,7 @@ import {
   ShaderMaterial,
 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { Skull } from './skull';
 
 /** Layers that the skin can be peeled to, outermost first; bone has no net of its own. */
 export const SHEETS = ['epidermis', 'dermis', 'hypodermis', 'bone'] as const;
@@ -31,8 +32,7 @@ interface Springs {
 
 export class LayerView {
   readonly group = new Group();
-  /** The skull's side at rest, never drawn: handles go along it. */
-  readonly skull: Mesh;
+  readonly skull: Skull;
   /** Nodes of a sheet. */
   readonly nodes: number;
   private readonly rest: Float32Array;
@@ -100,12 +100,8 @@ export class LayerView {
       drawn.frustumCulled = false;
       this.group.add(drawn);
     }
-    const bone = new BufferGeometry();
-    bone.setAttribute('position', sheets.at(-1)!.geometry.getAttribute('position'));
-    bone.setIndex(sheets.at(-1)!.geometry.getIndex());
-    this.skull = new Mesh(bone);
-    this.skull.visible = false;
-    this.group.add(this.skull);
+    this.skull = new Skull(sheets.at(-1)!.geometry);
+    this.group.add(this.skull.mesh);
     this.peel(0, { structural: true, shear: true });
   }
 
@@ -141,7 +137,7 @@ export class LayerView {
       geometry.dispose();
       material.dispose();
     }
-    this.skull.geometry.dispose();
+    this.skull.dispose();
   }
 }
 
