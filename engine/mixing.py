@@ -120,8 +120,8 @@ class Mixer:
         # What is let go goes as it was held.
         adds = self._adds[LAYERS.index(layer)]
         adds[claimed] = touched[claimed]
-        ramps = (*self._values.values(), *self._shares.values())
-        self._settled_at = max(tick, *(ramp.end() for ramp in ramps))
+        _, _, begin, length = np.moveaxis(self._ramps, 2, 0)
+        self._settled_at = max(tick, int((begin + length).max()))
         self._merged = None
 
     def _merged_units(self) -> dict[str, float]:

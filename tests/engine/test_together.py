@@ -201,3 +201,30 @@ def test_a_rig_whose_lips_would_buzz_takes_shorter_steps(standard_rig, live):
     for _ in range(90):
         simulator.step()
     assert simulator.frame("0").asleep
+
+
+def test_a_bank_whose_faces_fit_elsewhere_empties_a_few_a_tick(standard_rig, live):
+    """Half of two banks' faces go: the others move together, and none waits for all of them."""
+    units = Keyframe(action_units={"AU12": 0.8}, fade=2.0)
+    simulator = in_a_bank(standard_rig, live, [units] * (2 * WIDTH))
+
+    def banks():
+        held = {name: simulator._faces[name].seat[0] for name in simulator.faces}
+        return held, len(set(map(id, held.values())))
+
+    simulator.step()
+    for name in range(0, 2 * WIDTH, 2):
+        simulator.remove(str(name))
+    before, moves = banks()[0], []
+    while banks()[1] > 1:
+        simulator.step()
+        after = banks()[0]
+        moves.append(sum(after[name] is not before[name] for name in after))
+        before = after
+    assert sum(moves) == WIDTH // 2
+    assert max(moves) <= 4
+    # Who comes next is given the bank that was emptied, not another one.
+    emptied = simulator._stepper._spare
+    simulator.add("next")
+    simulator.step()
+    assert simulator._faces["next"].seat[0] is emptied
