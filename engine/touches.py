@@ -6,6 +6,8 @@ about whether the eye is open: a blink goes on under it, and closed eyes stay cl
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from .arrays import BoolArray
@@ -22,13 +24,22 @@ def touched(rig: Rig, held: Held) -> BoolArray:
     """Return which channels are lids that what is held only touches, shape (channels,)."""
     units = [rig.resolve_unit(key) for key in held.action_units]
     only = np.zeros(rig.channels.count, bool)
-    for index, muscle in enumerate(rig.muscles):
-        if isinstance(muscle, LidMuscle) and muscle.name not in held.muscles:
-            stem, _, side = muscle.name.partition(".")
+    for index, name, stem, side in _lids_of(rig):
+        if name not in held.muscles:
             weights = (
-                abs(unit.muscles.get(stem, unit.muscles.get(muscle.name, 0.0)))
+                abs(unit.muscles.get(stem, unit.muscles.get(name, 0.0)))
                 for unit, of in units
                 if of in ("", side)
             )
             only[index] = 0.0 < max(weights, default=0.0) < TOUCH
     return only
+
+
+@lru_cache(maxsize=16)
+def _lids_of(rig: Rig) -> list[tuple[int, str, str, str]]:
+    """Return index, name, name without side, and side of the lids' muscles."""
+    return [
+        (index, muscle.name, *muscle.name.partition(".")[::2])
+        for index, muscle in enumerate(rig.muscles)
+        if isinstance(muscle, LidMuscle)
+    ]

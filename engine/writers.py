@@ -72,7 +72,7 @@ class Writers:
         Raises:
             InvalidValue: If the layer has as many writers as it may.
         """
-        layer, before = self._held[keyframe.layer], self.units(keyframe.layer)
+        layer, before = self._held[keyframe.layer], self._units_for(keyframe)
         if keyframe.owner not in layer and len(layer) >= MOST_WRITERS:
             raise InvalidValue(
                 f"layer {keyframe.layer!r} has {MOST_WRITERS} writers, the most there may be; "
@@ -84,7 +84,7 @@ class Writers:
                 each.clear()
         self._place(layer, held, held.take(keyframe, self.rig), tick)
         self._held[keyframe.layer] = {o: each for o, each in layer.items() if not each.empty}
-        lengths = fade_lengths(self.rig, before, self.units(keyframe.layer), keyframe)
+        lengths = fade_lengths(self.rig, before, self._units_for(keyframe), keyframe)
         ends = [] if keyframe.ttl is None else [tick + max(1, ticks(keyframe.ttl))]
         if keyframe.hold is not None:
             ends.append(tick + int(lengths.max()) + ticks(keyframe.hold))
@@ -118,6 +118,10 @@ class Writers:
     def units(self, layer: str) -> dict[str, float]:
         """Return the action units that count in a layer."""
         return dict(self._whole(layer).action_units)
+
+    def _units_for(self, keyframe: Keyframe) -> dict[str, float]:
+        """Return the units that tell how long a command takes: none, if it says so itself."""
+        return self.units(keyframe.layer) if keyframe.fade is None else {}
 
     def vector(self, layer: str) -> tuple[FloatArray, FloatArray, BoolArray, BoolArray]:
         """Return what a layer asks of each channel, its share of it, whether it asks, or only adds.

@@ -256,7 +256,9 @@ class EmbeddedRunner:
 
     async def view(self, session: str) -> View:
         """Return the face as it stands."""
-        return await self._mailbox.ask(lambda: self._view(session))
+        frame, report = await self._mailbox.ask(lambda: self._view(session))
+        # On who asks, not between two ticks: told to whoever watches, it is asked for all the time.
+        return View(frame, with_writers(report))
 
     async def look(self, session: str) -> Look:
         """Return the face with all of its tissue, copied between two ticks."""
@@ -523,9 +525,9 @@ class EmbeddedRunner:
         if not group.simulator.faces:
             self._groups.remove(group)
 
-    def _view(self, session: str) -> View:
+    def _view(self, session: str) -> tuple[Frame, Mapping[str, object]]:
         simulator = self._group(session).simulator
-        return View(simulator.frame(session), with_writers(simulator.report(session)))
+        return simulator.frame(session), simulator.report(session)
 
     def _look(self, session: str) -> Look:
         simulator = self._group(session).simulator
