@@ -13,11 +13,12 @@ from conftest import parts_of, until
 from starlette.testclient import TestClient
 
 import service.embedded
-from engine import Keyframe, Model, Timeline, builtin_rig
+from engine import Frame, Keyframe, Model, Timeline, builtin_rig
 from service.embedded import EmbeddedRunner
 from service.latest_first import LatestFirst
 from service.load import TICK_SECONDS
 from service.priority import AWAITED, BEHIND, background_pool, take_short_turns
+from service.sessions import Session
 from service.timing import BOUNDS, Times, quantile_of
 
 NOTHING = Timeline((), 1.0)
@@ -188,6 +189,45 @@ def test_health_tells_the_pace(client: TestClient) -> None:
     assert pace["ticks"] >= pace["late_ticks"] >= 0
     assert pace["capacity"] == parts_of(client).settings.capacity_share
     assert {"awake", "load", "lateness_p99", "loop_delay_p99"} < set(pace)
+
+
+def test_frames_of_many_faces_leave_the_loop_to_others_in_between(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ten faces whose frames take 2 ms each: the loop turns between them, and one closes."""
+    opened = [client.post("/api/sessions", json={}).json()["id"] for _ in range(10)]
+    sessions, closed = parts_of(client).sessions, opened[-1]
+    shown: list[str] = []
+    frames = {each: sessions._live[each].frame for each in opened}
+
+    def show(session: Session, frame: Frame) -> None:
+        assert frame is frames[session.id]
+        shown.append(session.id)
+        time.sleep(0.002)
+
+    async def beside_others() -> list[int]:
+        """Return how many frames were handed on by each turn that the loop had meanwhile."""
+        monkeypatch.setattr(Session, "show", show)
+        showing = asyncio.create_task(sessions._show_frames(frames))
+        turns = []
+        while not showing.done():
+            await asyncio.sleep(0.0)
+            turns.append(len(shown))
+            if len(shown) == 5:
+                sessions._live.pop(closed, None)
+        monkeypatch.undo()
+        return turns
+
+    assert client.portal is not None
+    kept = sessions._live[closed]
+    try:
+        turns = client.portal.call(beside_others)
+    finally:
+        sessions._live[closed] = kept
+        for each in opened:
+            client.delete(f"/api/sessions/{each}")
+    assert shown == opened[:-1]
+    assert turns[:5] == [1, 2, 3, 4, 5]
 
 
 def test_times_are_counted_in_their_buckets() -> None:
