@@ -41,7 +41,6 @@ export class Face {
   private readonly tissueRest: Float32Array;
   private readonly tissueTriangles: ArrayLike<number>;
   private clipped: Plane[] = [];
-  private fleshClipped = false;
   private readonly strands: RidingStrands[] = [];
   private readonly nodes: FaceNodes;
   private readonly grid: number;
@@ -218,24 +217,20 @@ export class Face {
   paint(material: Material | Material[]): Material | Material[] {
     const own = this.skin.material;
     this.skin.material = material;
-    this.clip(this.clipped[0] ?? null, this.fleshClipped);
+    this.clip(this.clipped[0] ?? null);
     return own;
   }
 
-  /** Leave out what of skin and hair, and with `flesh` of wet flesh, lies behind a plane of the world; null: nothing. */
-  clip(plane: Plane | null, flesh = false): void {
+  /** Leave out what of skin and hair lies behind a plane of the world; null leaves out nothing. */
+  clip(plane: Plane | null): void {
     this.clipped = plane === null ? [] : [plane];
-    this.fleshClipped = flesh;
-    const skins = [this.skin.material].flat();
     for (const mesh of meshes(this.root)) {
       const { role, material: kind } = mesh.userData as { role?: string; material?: string };
-      const planes = kind === 'wet' && !flesh ? [] : this.clipped;
-      if (mesh !== this.skin && role !== 'strands' && kind !== 'hair' && kind !== 'wet') continue;
+      if (mesh !== this.skin && role !== 'strands' && kind !== 'hair') continue;
       for (const material of [mesh.material].flat()) {
-        // A sketch draws flesh, which it leaves out, and skin with one material.
-        if (kind === 'wet' && skins.includes(material)) continue;
-        if ((material.clippingPlanes?.length ?? 0) !== planes.length) material.needsUpdate = true;
-        material.clippingPlanes = planes;
+        if ((material.clippingPlanes?.length ?? 0) !== this.clipped.length)
+          material.needsUpdate = true;
+        material.clippingPlanes = this.clipped;
       }
     }
   }

@@ -1,8 +1,9 @@
-"""The muscles drawn over the face."""
+"""The muscles drawn over the face, and layers that cover the flesh in the mouth."""
 
 from __future__ import annotations
 
 import io
+import re
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,18 @@ pytestmark = pytest.mark.browser
 
 NOTICEABLE = 12
 """Of 255: less is a pixel that is drawn alike."""
+
+
+@pytest.fixture(scope="module")
+def opened(browser: playwright_api.Browser, url: str) -> playwright_api.Page:
+    """One page for all of them, with the face in its own materials."""
+    page = browser.new_page(viewport={"width": 1200, "height": 800})
+    page.set_default_timeout(120_000)
+    page.goto(f"{url}/?idle=0&level=low&dpr=0.5&view=front")
+    # A first sketch, as software draws it, has other colours.
+    page.wait_for_function("() => window.__viewer?.textured")
+    settle(page)
+    return page
 
 
 def middle(page: playwright_api.Page) -> NDArray[Any]:
@@ -51,12 +64,27 @@ def brought_by_muscles(page: playwright_api.Page) -> tuple[float, NDArray[Any]]:
     return float(changed.mean()), over[changed].mean(axis=0)
 
 
-def test_muscles_are_seen_and_glow_as_they_contract(page: playwright_api.Page, url: str) -> None:
-    page.set_viewport_size({"width": 1200, "height": 800})
-    page.goto(f"{url}/?idle=0&level=low&dpr=0.5")
-    # A first sketch, as software draws it, has other colours.
-    page.wait_for_function("() => window.__viewer?.textured")
-    settle(page)
+def test_gums_do_not_come_through_the_hypodermis(opened: playwright_api.Page) -> None:
+    page = opened
+    page.get_by_role("tab", name="Inside").click()
+    peel = page.get_by_role("group", name="Peel to")
+    with page.expect_response(re.compile("/layers$")):
+        peel.get_by_role("button", name="Hypodermis", exact=True).click()
+    page.get_by_role("slider", name="Cut").fill("-90")
+    page.wait_for_timeout(400)
+    page.evaluate("() => window.__viewer.render()")
+    with Image.open(io.BytesIO(page.locator("#face").screenshot())) as taken:
+        picture = np.asarray(taken.convert("RGB"), dtype=float)
+    high, wide, _ = picture.shape
+    mouth = picture[int(0.55 * high) : int(0.9 * high), int(0.35 * wide) : int(0.65 * wide)]
+    red, green, blue = np.moveaxis(mouth, 2, 0)
+    flesh = float(((red > green + 25) & (red > blue + 10)).mean())
+    peel.get_by_role("button", name="Skin").click()
+    assert flesh < 0.0005, flesh
+
+
+def test_muscles_are_seen_and_glow_as_they_contract(opened: playwright_api.Page) -> None:
+    page = opened
     page.get_by_role("button", name="Light and stage").click()
     page.get_by_role("switch", name="Muscles").click()
     playwright_api.expect(page.get_by_role("switch", name="Muscles")).to_be_checked()

@@ -3,7 +3,7 @@
 import { Plane, Vector3 } from 'three';
 import type { Face } from '../face';
 import type { LayersFrame } from '../inside/layers-frame';
-import { LayerView, SHEETS } from '../inside/layer-view';
+import { LayerView } from '../inside/layer-view';
 import type { Scene } from '../scene';
 import type { ViewerState } from '../state/viewer.svelte';
 import type { Overlay } from './on-stage';
@@ -93,8 +93,7 @@ export class LayerOverlay implements Overlay {
     }
     view?.peel(peel, { structural, shear });
     view?.cutAt(cut * METRES);
-    // Gums and the lids' flesh would come through the bone.
-    face?.clip(peel > 0 && view !== null ? this.plane : null, peel === SHEETS.length);
+    face?.clip(peel > 0 && view !== null ? this.plane : null);
     if (peel > 0 && view !== null) {
       this.stale = true;
       this.place();

@@ -23,6 +23,9 @@ const FILL = ['#dcae8f', '#c9776a', '#e6c56c', '#e8e0cd'] as const;
 const STRUCTURAL = '#20242a';
 const SHEAR = '#0d7f86';
 
+/** A sheet hides gums, teeth, eyeballs and the lids' flesh that come out of it by less than this [m]. */
+const HIDES = 16e-3;
+
 interface Springs {
   kind: 'structural' | 'shear' | 'tie';
   /** Sheets that they join. */
@@ -143,6 +146,15 @@ export class LayerView {
 
 type Cut = { value: number };
 
+/** Draws a place where it is, and has it hide what is a little before it; but never skin, which the cut leaves on the other side. */
+const OVER_FLESH = /* glsl */ `
+  vec4 overFlesh(vec4 seen, float beyond) {
+    float hides = clamp(0.8 * beyond, 0.0, ${HIDES.toFixed(4)});
+    vec4 drawn = projectionMatrix * seen;
+    vec4 nearer = projectionMatrix * vec4(seen.xyz * (1.0 - hides / length(seen.xyz)), 1.0);
+    return vec4(drawn.xy, drawn.w * nearer.z / nearer.w, drawn.w);
+  }`;
+
 function flesh(color: string, cut: Cut): ShaderMaterial {
   return new ShaderMaterial({
     uniforms: { color: { value: new Color(color) }, cut },
@@ -154,10 +166,12 @@ function flesh(color: string, cut: Cut): ShaderMaterial {
       attribute float across;
       varying float vAcross;
       varying vec3 vNormal;
+      uniform float cut;
+      ${OVER_FLESH}
       void main() {
         vAcross = across;
         vNormal = normalMatrix * normal;
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), across - cut);
       }`,
     fragmentShader: /* glsl */ `
       uniform vec3 color;
@@ -183,9 +197,11 @@ function thread(color: string, opacity: number, cut: Cut): ShaderMaterial {
     vertexShader: /* glsl */ `
       attribute float across;
       varying float vAcross;
+      uniform float cut;
+      ${OVER_FLESH}
       void main() {
         vAcross = across;
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), across - cut);
       }`,
     fragmentShader: /* glsl */ `
       uniform vec3 color;
