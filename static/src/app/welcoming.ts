@@ -19,6 +19,8 @@ const TRY_AGAIN_MS = 1000;
 export class Welcoming {
   /** Asks of a new face what the one before it did, so that two rigs can be compared. */
   resume: (() => void) | null = null;
+  /** When what was asked for in vain is asked for again. */
+  private again: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly api: Api,
@@ -33,6 +35,8 @@ export class Welcoming {
   async take(hello: Hello, tries = 0): Promise<void> {
     mark('hello');
     const { api, viewer, opening, stage, told } = this;
+    // It asks for the face itself: a line that broke while that was waited for would have it asked for twice.
+    if (hello.type === 'hello') clearTimeout(this.again);
     viewer.session = opening.session = hello.session;
     viewer.locked = '';
     viewer.keyed = api.key !== '' || api.ticket !== '';
@@ -64,13 +68,15 @@ export class Welcoming {
   /** Unless the page has gone on to another face meanwhile. */
   private tryAgain(hello: Hello, tries: number): void {
     if (tries >= MOST_TRIES) return;
-    setTimeout(
+    clearTimeout(this.again);
+    this.again = setTimeout(
       () => {
         const { opening, stage, told, viewer } = this;
         const missing = stage.address === '' || told.rigId === '';
         if (opening.session !== hello.session || !missing) return;
         viewer.say('');
-        void this.take(hello, tries + 1);
+        // An edit may have moved the session to another rig meanwhile.
+        void this.take({ ...hello, rig: told.rigId || hello.rig }, tries + 1);
       },
       TRY_AGAIN_MS * 2 ** tries,
     );

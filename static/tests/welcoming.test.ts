@@ -1,0 +1,94 @@
+// A face or a rig that the service did not give is asked for again, once at a time.
+
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import type { Api } from '../src/api';
+import type { OnStage } from '../src/app/on-stage';
+import type { Opening } from '../src/app/opening';
+import type { Told } from '../src/app/told';
+import { Welcoming } from '../src/app/welcoming';
+import type { Hello } from '../src/protocol';
+import { ViewerState } from '../src/state/viewer.svelte';
+
+const HELLO = { type: 'hello', session: 's', rig: 'r', surface: '/r.glb' } as Hello;
+
+describe('Welcoming', () => {
+  let shown = 0;
+  let described: string[] = [];
+  let working = false;
+  const make = (): Welcoming => {
+    const opening = { session: '', isGuest: false, countViewers: () => Promise.resolve() };
+    const stage = {
+      address: '',
+      loading: false,
+      show: (address: string) => {
+        shown++;
+        if (!working) return Promise.reject(new Error('The service is busy.'));
+        stage.address = address;
+        return Promise.resolve();
+      },
+      finish: () => Promise.resolve(),
+    };
+    const told = {
+      rigId: '',
+      take: () => undefined,
+      showRig: (id: string) => {
+        described.push(id);
+        told.rigId = id;
+        return Promise.resolve();
+      },
+    };
+    const api = { key: '', ticket: '', place: (where: string) => `http://there${where}` };
+    return new Welcoming(
+      api as unknown as Api,
+      new ViewerState(),
+      opening as unknown as Opening,
+      stage as unknown as OnStage,
+      told as unknown as Told,
+      'high',
+    );
+  };
+
+  beforeEach(() => {
+    [shown, described, working] = [0, [], false];
+    vi.useFakeTimers();
+    vi.stubGlobal('document', { body: { classList: { toggle: () => undefined } } });
+  });
+
+  afterEach(() => {
+    vi.useRealTimers();
+    vi.unstubAllGlobals();
+  });
+
+  it('asks again by longer and longer pauses, and then no more', async () => {
+    const welcoming = make();
+    await welcoming.take(HELLO);
+    const asked: number[] = [];
+    for (let second = 0; second < 32; second++) {
+      await vi.advanceTimersByTimeAsync(1000);
+      asked.push(shown);
+    }
+    expect([asked[0], asked[2], asked[6], asked[14]]).toEqual([2, 3, 4, 5]);
+    expect(asked.at(-1)).toBe(5);
+  });
+
+  it('asks once at a time where the line broke while it waited', async () => {
+    const welcoming = make();
+    await welcoming.take(HELLO);
+    await vi.advanceTimersByTimeAsync(500);
+    await welcoming.take(HELLO);
+    expect(shown).toBe(2);
+    await vi.advanceTimersByTimeAsync(900);
+    expect(shown).toBe(2);
+    await vi.advanceTimersByTimeAsync(200);
+    expect(shown).toBe(3);
+  });
+
+  it('keeps the rig that an edit moved the session to while it waited', async () => {
+    const welcoming = make();
+    await welcoming.take(HELLO);
+    await welcoming.take({ ...HELLO, type: 'rig', rig: 'edited' } as unknown as Hello);
+    working = true;
+    await vi.advanceTimersByTimeAsync(1000);
+    expect([shown, described]).toEqual([2, ['edited']]);
+  });
+});
