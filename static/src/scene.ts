@@ -7,6 +7,8 @@ import type { LightName } from './light-presets';
 import { LIGHTS } from './light-presets';
 import type { Ground } from './lights';
 import { createBackdrop, createEnvironment, createLights, setGround } from './lights';
+import type { Pair } from './pair';
+import { drawPair } from './pair';
 import { Resolution } from './resolution';
 import { Sight } from './sight';
 import { exposeSkin } from './tone';
@@ -21,12 +23,6 @@ const COARSEST = 0.6;
 const SHARP_AFTER_MS = 250;
 /** Share of the camera's way around the face that the lights go with it. */
 const LIGHTS_FOLLOW = 0.8;
-
-/** Two that are drawn side by side, as seen from the same place; null while one is on its way. */
-export interface Pair {
-  left: Object3D | null;
-  right: Object3D | null;
-}
 
 export interface SceneOptions extends Omit<ViewpointOptions, 'onMoved'> {
   pixelRatio: number | null;
@@ -267,29 +263,11 @@ export class Scene {
     this.changed = false;
     this.turnLights();
     if (this.both === null) this.renderer.render(this.scene, this.viewpoint.camera);
-    else this.drawBoth(this.both);
+    else drawPair(this.renderer, this.scene, this.viewpoint.camera, this.both);
     this.framesDrawn++;
     const waiting = this.waiting;
     this.waiting = [];
     for (const resolve of waiting) resolve();
-  }
-
-  /** Each in its half of the picture. */
-  private drawBoth({ left, right }: Pair): void {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    this.renderer.setScissorTest(true);
-    for (const [half, shown, hidden] of [
-      [0, left, right],
-      [1, right, left],
-    ] as const) {
-      if (shown !== null) shown.visible = true;
-      if (hidden !== null) hidden.visible = false;
-      this.renderer.setViewport((half * width) / 2, 0, width / 2, height);
-      this.renderer.setScissor((half * width) / 2, 0, width / 2, height);
-      this.renderer.render(this.scene, this.viewpoint.camera);
-    }
-    if (left !== null) left.visible = true;
-    this.renderer.setScissorTest(false);
   }
 
   private turnLights(): void {
