@@ -180,6 +180,13 @@ if (mouthWall > 0.0) {
 }
 `;
 
+/** Where skin is peeled from a face its mouth keeps its walls, or one would see through the head. */
+const PEELED = /* glsl */ `
+if (vWall < 0.9) {
+  #include <clipping_planes_fragment>
+}
+`;
+
 /**
  * Change the program of a physical material into skin. Needs attributes `restPosition` [m], `_hair`, `mouthWall`, `skinForm`
  * of skin-form.ts, and with the define SKIN_MAPS `uv` and `wrinkle`.
@@ -198,6 +205,7 @@ attribute float mouthWall;
 varying vec3 vRest;
 varying float vHair;
 varying vec2 vForm;
+varying float vWall;
 #ifdef SKIN_MAPS
 attribute float wrinkle;
 varying vec2 vSkinUv;
@@ -210,6 +218,7 @@ varying float vWrinkle;
 vRest = restPosition * 1000.0;
 vHair = _hair;
 vForm = skinForm;
+vWall = mouthWall;
 #ifdef SKIN_MAPS
 vSkinUv = uv;
 vWrinkle = wrinkle;
@@ -218,7 +227,8 @@ vWrinkle = wrinkle;
     ['#include <project_vertex>', `#include <project_vertex>\n${BEHIND_TEETH}`],
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
-    ['#include <common>', `${TILES}${FOLDS}#include <common>\n${NOISE}`],
+    ['#include <common>', `${TILES}${FOLDS}#include <common>\nvarying float vWall;\n${NOISE}`],
+    ['#include <clipping_planes_fragment>', PEELED],
     ['#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>\n${PAINTED}`],
     ['#include <normal_fragment_maps>', `#include <normal_fragment_maps>\n${RELIEF}`],
     ['#include <lights_physical_fragment>', `#include <lights_physical_fragment>\n${GLOSS}`],

@@ -31,6 +31,10 @@ describe('the skin s program', () => {
     expect(program.fragmentShader).toContain('scatteredShadow( ( directLight.visible');
     expect(program.fragmentShader).toContain('skinSmooth, 0.65 * skinBare');
     expect(program.uniforms).toHaveProperty('poreMap');
+    // Of skin that is peeled the walls of the mouth stay.
+    expect(program.fragmentShader).toMatch(
+      /if \(vWall < 0\.9\) \{\s*#include <clipping_planes_fragment>/,
+    );
   });
 
   it('darkens the floors of furrows, not their walls, and shades broad folds in every colour', () => {

@@ -25,6 +25,8 @@ const SHEAR = '#0d7f86';
 
 /** A sheet hides gums, teeth, eyeballs and the lids' flesh that come out of it by less than this [m]. */
 const HIDES = 16e-3;
+/** Its inner side, seen through mouth and lids, lies behind the walls of the mouth, which are drawn 30 mm deeper than they are [m]. */
+const SINKS = 36e-3;
 
 interface Springs {
   kind: 'structural' | 'shear' | 'tie';
@@ -46,6 +48,8 @@ export class LayerView {
     lines: LineSegments<BufferGeometry, ShaderMaterial>;
   }[] = [];
   private readonly cut = { value: 0 };
+  /** Out of the face, at each node as the sheet that is seen has it. */
+  private readonly outward: Float32BufferAttribute;
 
   /** @throws Error when the file cannot be had, or is of another form. */
   static async load(url: string): Promise<LayerView> {
@@ -75,10 +79,12 @@ export class LayerView {
       Float32Array.from({ length: this.rest.length / 3 }, (_, at) => this.rest[3 * at]!),
       1,
     );
+    this.outward = new Float32BufferAttribute(new Float32Array(this.rest.length), 3);
     sheets.forEach(({ geometry }, at) => {
       const sheet = new BufferGeometry();
       sheet.setAttribute('position', this.positions);
       sheet.setAttribute('across', away);
+      sheet.setAttribute('outward', this.outward);
       sheet.setIndex(Array.from(geometry.getIndex()!.array, (node) => node + at * this.nodes));
       this.sheets.push(new Mesh(sheet, flesh(FILL[at]!, this.cut)));
     });
@@ -88,6 +94,7 @@ export class LayerView {
       const net = new BufferGeometry();
       net.setAttribute('position', this.positions);
       net.setAttribute('across', away);
+      net.setAttribute('outward', this.outward);
       net.setIndex(geometry.getIndex());
       const color = springs.kind === 'shear' ? SHEAR : STRUCTURAL;
       const lines = new LineSegments(
@@ -113,8 +120,8 @@ export class LayerView {
     const top = to - 1;
     this.sheets.forEach((sheet, at) => {
       sheet.visible = to > 0 && at === Math.min(top + 1, SHEETS.length - 1);
-      if (sheet.visible) sheet.geometry.computeVertexNormals();
     });
+    this.turn();
     for (const { springs, lines } of this.nets) {
       const wanted = springs.kind === 'shear' ? shown.shear : shown.structural;
       lines.visible = to > 0 && wanted && springs.from === top;
@@ -131,7 +138,20 @@ export class LayerView {
     const places = this.positions.array;
     for (let at = 0; at < places.length; at++) places[at] = this.rest[at]! + moved[at]!;
     this.positions.needsUpdate = true;
-    for (const sheet of this.sheets) if (sheet.visible) sheet.geometry.computeVertexNormals();
+    this.turn();
+  }
+
+  /** Find which way the sheet that is seen looks now. */
+  private turn(): void {
+    this.sheets.forEach(({ visible, geometry }, at) => {
+      if (!visible) return;
+      geometry.computeVertexNormals();
+      const size = 3 * this.nodes;
+      const normals = geometry.getAttribute('normal').array.subarray(at * size, (at + 1) * size);
+      for (let sheet = 0; sheet < SHEETS.length; sheet++)
+        this.outward.array.set(normals, sheet * size);
+      this.outward.needsUpdate = true;
+    });
   }
 
   dispose(): void {
@@ -148,8 +168,10 @@ type Cut = { value: number };
 
 /** Draws a place where it is, and has it hide what is a little before it; but never skin, which the cut leaves on the other side. */
 const OVER_FLESH = /* glsl */ `
-  vec4 overFlesh(vec4 seen, float beyond) {
+  vec4 overFlesh(vec4 seen, vec3 normal, float beyond) {
     float hides = clamp(0.8 * beyond, 0.0, ${HIDES.toFixed(4)});
+    float faces = dot(normalize(normal), normalize(-seen.xyz));
+    hides = mix(${(-SINKS).toFixed(4)}, hides, smoothstep(-0.55, -0.3, faces));
     vec4 drawn = projectionMatrix * seen;
     vec4 nearer = projectionMatrix * vec4(seen.xyz * (1.0 - hides / length(seen.xyz)), 1.0);
     return vec4(drawn.xy, drawn.w * nearer.z / nearer.w, drawn.w);
@@ -164,6 +186,7 @@ function flesh(color: string, cut: Cut): ShaderMaterial {
     polygonOffsetUnits: 1,
     vertexShader: /* glsl */ `
       attribute float across;
+      attribute vec3 outward;
       varying float vAcross;
       varying vec3 vNormal;
       uniform float cut;
@@ -171,7 +194,7 @@ function flesh(color: string, cut: Cut): ShaderMaterial {
       void main() {
         vAcross = across;
         vNormal = normalMatrix * normal;
-        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), across - cut);
+        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), normalMatrix * outward, across - cut);
       }`,
     fragmentShader: /* glsl */ `
       uniform vec3 color;
@@ -196,12 +219,13 @@ function thread(color: string, opacity: number, cut: Cut): ShaderMaterial {
     depthWrite: false,
     vertexShader: /* glsl */ `
       attribute float across;
+      attribute vec3 outward;
       varying float vAcross;
       uniform float cut;
       ${OVER_FLESH}
       void main() {
         vAcross = across;
-        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), across - cut);
+        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), normalMatrix * outward, across - cut);
       }`,
     fragmentShader: /* glsl */ `
       uniform vec3 color;
