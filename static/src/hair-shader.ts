@@ -79,14 +79,15 @@ material.specularColorBlended *= 0.35;
 material.specularF90 *= 0.25;
 `;
 
-/** Cards seen edge on would draw a hard line, and what is left is cut as finely as the samples of a pixel allow. */
+/**
+ * Cards seen edge on would draw a hard line. What is left is cut as finely as the samples of a pixel allow, and steeply:
+ * one card behind the other covers the same samples, so that what is half thin stays so however many there are.
+ */
 const CUT = /* glsl */ `
 #ifdef USE_MAP
   vec3 cardFaces = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));
   diffuseColor.a *= smoothstep(0.0, 0.24, abs(dot(cardFaces, normalize(vViewPosition))));
-  diffuseColor.a = clamp(diffuseColor.a * 1.2, 0.0, 1.0);
-  float grain = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-  diffuseColor.a = clamp(diffuseColor.a + (grain - 0.5) * 0.22 * step(0.02, diffuseColor.a) * step(diffuseColor.a, 0.98), 0.0, 1.0);
+  diffuseColor.a = smoothstep(0.05, 0.72, diffuseColor.a);
   if (diffuseColor.a < 0.04) discard;
 #endif
 `;
