@@ -19,6 +19,9 @@ from .settings import Settings
 # A viewer that stops reading may hold this much of stale frames; the system's default is 4 MB.
 _SEND_BUFFER_BYTES = 65_536
 _SHUTDOWN_SECONDS = 3
+_IDLE_SECONDS = 75
+"""After which a connection that nobody uses is closed: later than clients and proxies let go of
+theirs, mostly a minute, or now and then one would send a request into a line that is being cut."""
 _START_SECONDS = 60.0
 _TICKET = re.compile(r"(?<=[?&]ticket=)[^&\s]+")
 
@@ -59,6 +62,7 @@ def server_of(app: FastAPI, settings: Settings) -> uvicorn.Server:
         access_log=False,
         log_level="warning",
         server_header=False,
+        timeout_keep_alive=_IDLE_SECONDS,
         timeout_graceful_shutdown=_SHUTDOWN_SECONDS,
     )
     for name in ("uvicorn.error", "uvicorn.access"):

@@ -29,7 +29,7 @@ _CALLS_AT_ONCE = 4
 _TIMEOUT_SECONDS = 300.0
 _READY_SECONDS = 300.0
 _IDLE_SECONDS = 2.0
-"""After which a connection is not used again: the service closes idle ones after five."""
+"""After which a connection is not used again: a service elsewhere may close idle ones soon."""
 
 
 class SoakRefused(Exception):

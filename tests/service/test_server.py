@@ -10,7 +10,9 @@ import urllib.parse
 import urllib.request
 from collections.abc import Iterator
 from itertools import islice
+from pathlib import Path
 
+import httpx2
 import pytest
 from conftest import settings_in
 from websockets.exceptions import ConnectionClosed, InvalidStatus
@@ -18,7 +20,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from service.app import create_app
 from service.protocol import SUBPROTOCOL, SurfaceFrame, decode_frame, encode_frame
-from service.server import listen, running
+from service.server import listen, running, server_of
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +29,13 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     settings = settings_in(tmp_path_factory.mktemp("server"))
     with running(create_app(settings), settings) as address:
         yield address
+
+
+def test_connections_outlive_what_clients_and_proxies_keep(tmp_path: Path) -> None:
+    """Whoever closes first must be the client: a request sent as the server closes is lost."""
+    settings = settings_in(tmp_path)
+    kept = server_of(create_app(settings), settings).config.timeout_keep_alive
+    assert kept > max(60, httpx2.Limits().keepalive_expiry or 0.0)
 
 
 def call(url: str, method: str, body: object) -> dict[str, object]:
