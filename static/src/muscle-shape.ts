@@ -38,6 +38,8 @@ export interface Fibre {
   radii: number[];
   /** By how much of the jaw its bone end rides. */
   rides: number;
+  /** Whether each point goes with the skin over it; else all go with the skin at the last one. */
+  spread: boolean;
 }
 
 const STEPS = 12;
@@ -52,13 +54,15 @@ const SHEET_GAP = 4.5;
 const RINGS = [0.52, 0.68, 0.84];
 const THIN = 0.35;
 const THICK = 1.25;
+/** Sheets without bone: they lie in the lip that they insert in, and all of them goes with it. */
+const IN_LIPS = /^orbicularis_oris/;
 
 export function fibresOf(muscle: MuscleForm): Fibre[] {
   switch (muscle.kind) {
     case 'linear':
       return spindle(muscle.attachment as Point, muscle.insertion as Point, muscle.jaw_share ?? 0);
     case 'sheet':
-      return sheet(muscle.attachment as readonly Point[], muscle.insertion as readonly Point[]);
+      return sheet(muscle);
     case 'sphincter':
       return RINGS.map((share) => ring(muscle, share));
     default:
@@ -79,11 +83,13 @@ function spindle(attachment: Point, insertion: Point, rides: number): Fibre[] {
   });
 }
 
-function sheet(attachment: readonly Point[], insertion: readonly Point[]): Fibre[] {
-  const count = Math.max(3, Math.round(lengthOf(insertion) / SHEET_GAP) + 1);
+function sheet({ name, attachment, insertion }: MuscleForm): Fibre[] {
+  const [from, to] = [attachment as readonly Point[], insertion as readonly Point[]];
+  const count = Math.max(3, Math.round(lengthOf(to) / SHEET_GAP) + 1);
   return Array.from({ length: count }, (_, index) => {
     const share = index / (count - 1);
-    return straight(onLine(attachment, share), onLine(insertion, share), 0);
+    const fibre = straight(onLine(from, share), onLine(to, share), 0);
+    return IN_LIPS.test(name) ? { ...fibre, follows: fibre.follows.map(() => 1) } : fibre;
   });
 }
 
@@ -95,6 +101,7 @@ function straight(from: Point, to: Point, rides: number): Fibre {
     follows: shares,
     radii: shares.map((share) => THIN + (THICK - THIN) * Math.sin(Math.PI * share) ** 0.8),
     rides,
+    spread: false,
   };
 }
 
@@ -118,6 +125,7 @@ function ring({ plane, normal, semi_major: a, semi_minor: b }: MuscleForm, share
     follows: angles.map(() => 1),
     radii: angles.map(() => 0.8),
     rides: 0,
+    spread: true,
   };
 }
 

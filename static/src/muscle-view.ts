@@ -121,17 +121,16 @@ export class MuscleView {
   }
 
   private addTube(
-    { points, follows, radii, rides }: Fibre,
+    { points, follows, radii, rides, spread }: Fibre,
     muscle: number,
     built: { positions: number[]; normals: number[]; index: number[] },
   ): void {
     const first = this.vertices.length;
     // Each point of a ring goes with the skin over it; all of a straight fibre with its bone, and with its skin end.
-    const isRing = follows[0] === 1;
     const end = points.at(-1)!;
     const under = nearestPoint(this.ground, end);
     points.forEach((point, at) => {
-      const tied = isRing ? nearestPoint(this.ground, point) : under;
+      const tied = spread ? nearestPoint(this.ground, point) : under;
       const [out, aside] = frameAt(points, at);
       for (let side = 0; side < SIDES; side++) {
         const angle = (2 * Math.PI * side) / SIDES;

@@ -41,6 +41,25 @@ describe('fibresOf', () => {
     expect(fibres.at(-1)!.points.at(-1)![0]).toBeCloseTo(24);
   });
 
+  it('has all of a sheet in a lip go with it: it has no bone to stay on', () => {
+    const fibres = fibresOf({
+      name: 'orbicularis_oris_inferior.L',
+      kind: 'sheet',
+      attachment: [
+        [0, -69, 101],
+        [25, -70, 88],
+      ],
+      insertion: [
+        [0, -80, 103],
+        [25, -77, 90],
+      ],
+    });
+    for (const { follows, spread } of fibres) {
+      expect(new Set(follows)).toEqual(new Set([1]));
+      expect(spread).toBe(false);
+    }
+  });
+
   it('draws rings that close, and go with the skin', () => {
     const [fibre] = fibresOf({
       name: 'orbicularis_oris',

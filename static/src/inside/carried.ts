@@ -27,9 +27,9 @@ export function carriedZone(muscle: MuscleForm, by: Carrier): Point[][] {
 }
 
 /** The points of one of its fibres, on the face as it is. */
-export function carriedFibre({ points, follows, rides }: Fibre, by: Carrier): Point[] {
+export function carriedFibre({ points, follows, rides, spread }: Fibre, by: Carrier): Point[] {
   // Each point of a ring goes with the skin over it.
-  if (follows[0] === 1) return points.map((point) => gone(point, by));
+  if (spread) return points.map((point) => gone(point, by));
   // All of a straight fibre goes with its bone, and by and by with what its skin end does besides.
   const end = points.at(-1)!;
   const { to } = by.bone(rides);
