@@ -72,10 +72,6 @@ class Ramp:
         """Return the values at `tick`: an ease in and out, level at both ends."""
         return ramps_at(self.start, self.target, self.begin, self.length, tick)
 
-    def end(self) -> int:
-        """Return the tick at which the last entry arrives."""
-        return int((self.begin + self.length).max())
-
     def move(self, target: FloatArray, tick: int, length: FloatArray) -> None:
         """Send the entries whose target changes on a new way from where they are.
 

@@ -15,7 +15,7 @@ from .lanes import WIDTH, Bank, plan_of
 
 _MOVES_A_TICK = 4
 """Faces that change places in a tick at most, so that a bank which empties holds up none: a move
-takes 0.3 ms, a fifteenth of a bank's own tick."""
+takes 0.3 ms, a seventh of a bank's own tick."""
 
 
 class Together:
@@ -31,7 +31,7 @@ class Together:
         self._assembly, self._farthest = assembly, farthest
         self._plan = plan_of(assembly)
         self._seats: dict[Bank, list[FaceState | None]] = {}
-        # The bank that was given up last: to lay out another takes as long as its tick.
+        # The bank that was given up last: to lay out another takes two thirds of its tick.
         self._spare: Bank | None = None
 
     @staticmethod

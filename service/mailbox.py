@@ -106,8 +106,7 @@ class Mailbox:
 def _tell(questions: Sequence[_Question[Any]]) -> None:
     """Have the loops of those who asked tell them, all at once.
 
-    A loop that is woken takes the interpreter from the thread that wakes it, half a millisecond or
-    more each time: beside a storm of commands that was a third of a tick.
+    A loop that is woken wants the interpreter of the thread that woke it, which has a tick to step.
     """
     for loop in {question.loop for question in questions}:
         own = [question for question in questions if question.loop is loop]

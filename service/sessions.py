@@ -514,10 +514,14 @@ class Sessions:
     async def _hand_on(self) -> None:
         async for tick in self._runner.ticks():
             try:
-                await self._show_frames(tick.frames)
-                self._take_played(tick)
+                await self._take(tick)
             except Exception:
                 _LOG.exception("frames could not be handed on")
+
+    async def _take(self, tick: Tick) -> None:
+        # First, in one go: commands that come between the frames are later ones.
+        self._take_played(tick)
+        await self._show_frames(tick.frames)
 
     async def _show_frames(self, frames: Mapping[str, Frame]) -> None:
         """Hand frames on; who else wants the loop has a turn in between."""
@@ -545,7 +549,8 @@ class Sessions:
         for session_id in tick.reset:
             session = self._live.get(session_id)
             if session is not None:
-                session.tail.add(Command(session.frame.tick, Resumed()))
+                frame = tick.frames.get(session_id, session.frame)
+                session.tail.add(Command(frame.tick, Resumed()))
                 session.held.clear()
                 session.speaking.clear()
                 session.unsaved = session.state_changed = True

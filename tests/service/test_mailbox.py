@@ -3,6 +3,8 @@
 import asyncio
 import threading
 from collections.abc import Awaitable, Callable
+from functools import partial
+from unittest import mock
 
 import pytest
 
@@ -10,23 +12,18 @@ from service.errors import Busy
 from service.mailbox import Mailbox
 
 
-def run(test: Callable[[Mailbox, list[int]], Awaitable[None]]) -> list[int]:
-    """Run a test on a loop of its own; return how many callbacks each waking from outside had."""
-    wakings: list[int] = []
+def run(test: Callable[[Mailbox], Awaitable[None]]) -> int:
+    """Run a test on a loop of its own; return how often another thread woke that."""
 
-    async def main() -> None:
+    async def main() -> int:
         loop = asyncio.get_running_loop()
-        threadsafe = loop.call_soon_threadsafe
+        with mock.patch.object(
+            loop, "call_soon_threadsafe", wraps=loop.call_soon_threadsafe
+        ) as waking:
+            await test(Mailbox())
+        return waking.call_count
 
-        def counted(*arguments: object, **options: object) -> asyncio.Handle:
-            wakings.append(1)
-            return threadsafe(*arguments, **options)  # type: ignore[arg-type]
-
-        loop.call_soon_threadsafe = counted  # type: ignore[method-assign, assignment]
-        await test(Mailbox(), wakings)
-
-    asyncio.run(main())
-    return wakings
+    return asyncio.run(main())
 
 
 async def asked(mailbox: Mailbox, *questions: Callable[[], object]) -> list[asyncio.Task[object]]:
@@ -45,21 +42,22 @@ def answer_elsewhere(mailbox: Mailbox) -> bool:
 
 
 def test_a_storm_of_questions_wakes_the_loop_once() -> None:
-    async def test(mailbox: Mailbox, wakings: list[int]) -> None:
+    async def test(mailbox: Mailbox) -> None:
         order: list[int] = []
 
-        def note(number: int) -> Callable[[], int]:
-            return lambda: order.append(number) or number  # type: ignore[func-returns-value]
+        def note(number: int) -> int:
+            order.append(number)
+            return number
 
-        tasks = await asked(mailbox, *(note(number) for number in range(20)))
+        tasks = await asked(mailbox, *(partial(note, number) for number in range(20)))
         assert answer_elsewhere(mailbox)
         assert await asyncio.gather(*tasks) == list(range(20)) == order
 
-    assert run(test) == [1]
+    assert run(test) == 1
 
 
 def test_what_goes_wrong_goes_to_who_asked_alone() -> None:
-    async def test(mailbox: Mailbox, wakings: list[int]) -> None:
+    async def test(mailbox: Mailbox) -> None:
         wrong, right = await asked(mailbox, lambda: 1 / 0, lambda: "well")
         answer_elsewhere(mailbox)
         with pytest.raises(ZeroDivisionError):
@@ -70,7 +68,7 @@ def test_what_goes_wrong_goes_to_who_asked_alone() -> None:
 
 
 def test_who_went_away_is_not_answered() -> None:
-    async def test(mailbox: Mailbox, wakings: list[int]) -> None:
+    async def test(mailbox: Mailbox) -> None:
         done: list[str] = []
         gone, there = await asked(
             mailbox, lambda: done.append("gone"), lambda: done.append("there")
@@ -85,7 +83,7 @@ def test_who_went_away_is_not_answered() -> None:
 
 
 def test_who_goes_away_while_answered_does_no_harm() -> None:
-    async def test(mailbox: Mailbox, wakings: list[int]) -> None:
+    async def test(mailbox: Mailbox) -> None:
         gone, there = await asked(mailbox, lambda: 1, lambda: 2)
         answer_elsewhere(mailbox)
         gone.cancel()
@@ -95,7 +93,7 @@ def test_who_goes_away_while_answered_does_no_harm() -> None:
 
 
 def test_what_waits_behind_the_end_is_refused() -> None:
-    async def test(mailbox: Mailbox, wakings: list[int]) -> None:
+    async def test(mailbox: Mailbox) -> None:
         (first,) = await asked(mailbox, lambda: 1)
         mailbox.stop()
         (second,) = await asked(mailbox, lambda: 2)

@@ -18,6 +18,7 @@ from service.embedded import EmbeddedRunner
 from service.latest_first import LatestFirst
 from service.load import TICK_SECONDS
 from service.priority import AWAITED, BEHIND, background_pool, take_short_turns
+from service.runner import Played, Tick
 from service.sessions import Session
 from service.timing import BOUNDS, Times, quantile_of
 
@@ -228,6 +229,28 @@ def test_frames_of_many_faces_leave_the_loop_to_others_in_between(
             client.delete(f"/api/sessions/{each}")
     assert shown == opened[:-1]
     assert turns[:5] == [1, 2, 3, 4, 5]
+
+
+def test_what_took_effect_is_noted_before_the_loop_turns_to_others(
+    client: TestClient, session: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Between two frames a command may come: it is later than what a face was just played."""
+    sessions = parts_of(client).sessions
+    noted: list[list[int]] = []
+    live = sessions._live[session]
+    played = Played(session, live.frame.tick + 5, Keyframe(action_units={"AU12": 0.5}))
+
+    def show(each: Session, frame: Frame) -> None:
+        noted.append([command.tick for command in each.tail.commands])
+
+    async def take() -> None:
+        monkeypatch.setattr(Session, "show", show)
+        await sessions._take(Tick({session: live.frame}, played=[played]))
+        monkeypatch.undo()
+
+    assert client.portal is not None
+    client.portal.call(take)
+    assert played.tick in noted[-1]
 
 
 def test_times_are_counted_in_their_buckets() -> None:
