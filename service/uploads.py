@@ -163,7 +163,9 @@ async def _next(receive: Receive) -> Message:
             return await receive()
     except TimeoutError:
         message = f"no byte of the file came for {_STALLED_SECONDS:g} s; send it again"
-        raise _refused(408, "upload_stalled", message) from None
+        # RFC 9110, 15.5.9: whoever sends no end of a request should not keep the connection.
+        headers = {"Connection": "close"}
+        raise _refused(408, "upload_stalled", message, headers) from None
 
 
 def _begin(path: Path) -> None:

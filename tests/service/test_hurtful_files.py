@@ -140,7 +140,12 @@ def answered(url: str, request: bytes) -> str:
 
 def request_of(length: int, *lines: str) -> bytes:
     """Return the head of a POST with a tracker's file."""
-    head = ("POST /api/clips HTTP/1.1", "Host: localhost", "Content-Type: text/csv")
+    head = (
+        "POST /api/clips HTTP/1.1",
+        "Host: localhost",
+        "Connection: close",
+        "Content-Type: text/csv",
+    )
     return "\r\n".join((*head, f"Content-Length: {length}", *lines, "", "")).encode()
 
 
@@ -179,9 +184,12 @@ def test_one_who_falls_silent_holds_no_place_for_long(
     monkeypatch.setattr(service.uploads, "_STALLED_SECONDS", 0.1)
     app = create_app(settings)
     with running(app, settings) as url:
-        refused = answered(url, request_of(1000) + b"frame")
+        # Closed without being asked: what would come next is the rest of a file, or nothing.
+        asked = request_of(1000).replace(b"Connection: close\r\n", b"")
+        refused = answered(url, asked + b"frame")
         assert refused.startswith("HTTP/1.1 408 ")
         assert "upload_stalled" in refused
+        assert "\r\nconnection: close\r\n" in refused.lower()
         assert not any(settings.clips_folder.iterdir())
 
 
