@@ -5,6 +5,7 @@ import type { FaceState } from './protocol';
 import type { AttributeInfo, Recipe } from './recipe';
 import type { Place } from './feelings';
 import type { MuscleForm } from './muscle-shape';
+import { ApiError, refusalOf } from './refusal';
 import { withTicket } from './ticket';
 
 /** Anything numeric in here can be edited; see tissueFields. */
@@ -69,16 +70,6 @@ export interface SessionInfo extends FaceState {
   viewers?: number;
   /** Seconds since 1970. */
   created?: number;
-}
-
-/** An answer other than 2xx. `status` is 0 when there was no answer at all. */
-export class ApiError extends Error {
-  constructor(
-    readonly status: number,
-    message: string,
-  ) {
-    super(message);
-  }
 }
 
 const TICKET_SECONDS = 86_400;
@@ -235,14 +226,8 @@ export class Api {
       throw new ApiError(0, 'The service does not answer.');
     }
     if (response.ok) return response;
-    const answer: unknown = await response.json().catch(() => null);
-    throw new ApiError(response.status, errorText(answer, response.status));
+    throw await refusalOf(response);
   }
-}
-
-function errorText(answer: unknown, status: number): string {
-  const message = (answer as { message?: unknown } | null)?.message;
-  return typeof message === 'string' ? message : `The service answered ${status}.`;
 }
 
 type AxisLimits = Record<string, [number, number]>;

@@ -4,6 +4,7 @@ import type { Hello, StateMessage, ErrorMessage, WarningMessage } from './protoc
 import type { SurfaceFrame } from './surface-frame';
 import { FrameReader, PACKED_QUERY, standsAlone } from './packed';
 import { ackCommand, readMessage, SUBPROTOCOL } from './protocol';
+import { answerOf, isFinal, restOf } from './refusal';
 
 export type Status = 'connecting' | 'open' | 'waiting' | 'closed';
 
@@ -19,13 +20,17 @@ export interface Socket {
 }
 
 export interface ConnectionOptions {
-  /** Address of the stream. Asked before each attempt, so that a face that is gone can be opened anew. */
+  /**
+   * Address of the stream. Asked before each attempt, so that a face that is gone can be opened anew; an ApiError
+   * that is final ends the attempts.
+   */
   locate: () => Promise<string>;
   onHello: (hello: Hello) => void;
   onState: (state: StateMessage) => void;
   /** Something was refused, or obeyed only in part. */
   onTrouble: (trouble: ErrorMessage | WarningMessage) => void;
-  onStatus: (status: Status, detail: string) => void;
+  /** @param answer of the service, where that is what is wrong; otherwise 0. */
+  onStatus: (status: Status, detail: string, answer: number) => void;
   /** A newer frame lies ready for `takeFrame`. */
   onFrameReady: () => void;
   open?: (url: string) => Socket;
@@ -34,6 +39,8 @@ export interface ConnectionOptions {
 
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 10_000;
+/** A service that wants to be left alone for longer is asked all the same. */
+const LONGEST_REST_MS = 600_000;
 /** A connection that lasted this long was a good one: the next pause is short again. */
 const STEADY_MS = 5_000;
 const SOCKET_OPEN = 1;
@@ -59,9 +66,14 @@ export class Connection {
   }
 
   close(): void {
-    this.attempt++;
-    this.leave();
-    this.options.onStatus('closed', '');
+    this.abandon();
+    this.tell('closed');
+  }
+
+  /** What is asked for is refused for good: say why, once, and ask no more. */
+  giveUp(error: unknown): void {
+    this.abandon();
+    this.tell('closed', wordsOf(error), answerOf(error));
   }
 
   /** Send a text frame; false if there is no open socket, in which case nothing is kept. */
@@ -83,12 +95,12 @@ export class Connection {
   }
 
   private async try(attempt: number): Promise<void> {
-    this.options.onStatus('connecting', '');
+    this.tell('connecting');
     let url: string;
     try {
       url = await this.options.locate();
     } catch (error) {
-      if (attempt === this.attempt) this.pause(error instanceof Error ? error.message : '');
+      if (attempt === this.attempt) this.refused(error);
       return;
     }
     if (attempt === this.attempt) this.open(url);
@@ -102,7 +114,7 @@ export class Connection {
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => {
       this.openedAt = Date.now();
-      this.options.onStatus('open', '');
+      this.tell('open');
     };
     socket.onmessage = (event) => {
       this.receive(event.data as string | ArrayBuffer);
@@ -131,10 +143,7 @@ export class Connection {
     this.socket = null;
     this.waiting = [];
     if (event.code === CLOSE_PROTOCOL_ERROR) {
-      this.options.onStatus(
-        'closed',
-        event.reason || 'The service speaks another version. Reload the page.',
-      );
+      this.tell('closed', event.reason || 'The service speaks another version. Reload the page.');
       return;
     }
     if (this.openedAt > 0 && Date.now() - this.openedAt >= STEADY_MS) this.failures = 0;
@@ -142,16 +151,34 @@ export class Connection {
     this.pause(event.reason);
   }
 
-  private pause(reason: string): void {
+  private refused(error: unknown): void {
+    if (isFinal(error)) this.giveUp(error);
+    else this.pause(wordsOf(error), answerOf(error), restOf(error));
+  }
+
+  /** @param rest how long the service asked to be left alone at least [ms]. */
+  private pause(reason: string, answer = 0, rest = 0): void {
     const longest = Math.min(LONGEST_PAUSE_MS, FIRST_PAUSE_MS * 2 ** this.failures);
     this.failures++;
     // Half of the pause is chance, so that many viewers do not come back in the same instant.
     const wait = longest * (0.5 + 0.5 * (this.options.random ?? Math.random)());
-    this.options.onStatus('waiting', reason);
-    this.timer = setTimeout(() => {
-      this.timer = null;
-      void this.try(++this.attempt);
-    }, wait);
+    this.tell('waiting', reason, answer);
+    this.timer = setTimeout(
+      () => {
+        this.timer = null;
+        void this.try(++this.attempt);
+      },
+      rest > 0 ? Math.min(rest, LONGEST_REST_MS) + wait : wait,
+    );
+  }
+
+  private tell(status: Status, detail = '', answer = 0): void {
+    this.options.onStatus(status, detail, answer);
+  }
+
+  private abandon(): void {
+    this.attempt++;
+    this.leave();
   }
 
   private leave(): void {
@@ -165,4 +192,8 @@ export class Connection {
     socket.onopen = socket.onmessage = socket.onclose = null;
     socket.close(1000, 'The viewer left.');
   }
+}
+
+function wordsOf(error: unknown): string {
+  return error instanceof Error ? error.message : '';
 }

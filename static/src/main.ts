@@ -48,6 +48,7 @@ const viewer = new ViewerState();
 viewer.rigName = page.rig;
 viewer.view = page.view;
 viewer.light = page.light;
+viewer.embedded = page.embed;
 // A page inside another one may be kept from its storage.
 viewer.theme = page.embed ? 'auto' : keptTheme();
 document.body.classList.toggle('bare', page.bare);
@@ -64,10 +65,12 @@ const connection: Connection = new Connection({
   onTrouble: (trouble) => {
     viewer.say(trouble.message);
   },
-  onStatus: (status, detail) => {
+  onStatus: (status, detail, answer) => {
     viewer.status = status;
     viewer.detail = detail;
-    if (status === 'closed' && detail !== '') viewer.say(detail);
+    viewer.answer = answer;
+    // Before the first face the curtain says it.
+    if (viewer.surfaceReady && viewer.isRefused && viewer.locked === '') viewer.say(detail);
   },
   onFrameReady: () => {
     scene.wake();
@@ -129,7 +132,9 @@ const commands: Commands = new Commands(
 );
 const told: Told = new Told(api, viewer, commands, muscles, editing);
 for (const overlay of [heat, trails, layers, editing, beside]) stage.addOverlay(overlay);
-const welcoming = new Welcoming(api, viewer, opening, stage, told, stage.chooseLevel());
+const welcoming = new Welcoming(api, viewer, opening, stage, told, stage.chooseLevel(), (error) => {
+  connection.giveUp(error);
+});
 const timeline = new TimelineState();
 const performer = new Performer(timeline, {
   held: () => commands.held(),

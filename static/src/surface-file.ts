@@ -3,6 +3,7 @@
 import type { BufferAttribute, Group, Mesh } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { meshes, plainArray } from './gltf-nodes';
+import { refusalOf } from './refusal';
 import type { Eyeball } from './surface';
 import { DrawnSurface } from './surface';
 import type { MapName } from './textures';
@@ -53,12 +54,19 @@ const DEFAULT_GRID = 2e-5;
 /**
  * Load the tissue surface of a rig.
  * @param onProgress told the bytes that have come, and those that there are, 0 where nobody says.
+ * @throws ApiError when the service refuses the file.
  * @throws Error when the file cannot be had, or has no skin with a map.
  */
 export async function readSurface(url: string, onProgress: OnProgress): Promise<SurfaceFile> {
-  const gltf = await new GLTFLoader().loadAsync(url, ({ loaded, total, lengthComputable }) => {
-    onProgress(loaded, lengthComputable ? total : 0);
-  });
+  const gltf = await new GLTFLoader()
+    .loadAsync(url, ({ loaded, total, lengthComputable }) => {
+      onProgress(loaded, lengthComputable ? total : 0);
+    })
+    .catch(async (error: unknown) => {
+      // The loader's own words would name the address, which may carry a ticket.
+      const { response } = error as { response?: unknown };
+      throw response instanceof Response ? await refusalOf(response) : error;
+    });
   const skin = meshes(gltf.scene).find((mesh) => mesh.userData.role === 'skin');
   const extras = skin?.userData as Partial<SkinExtras> | undefined;
   if (skin === undefined || extras?.map === undefined) {

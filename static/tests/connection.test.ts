@@ -4,6 +4,7 @@ import { readFileSync } from 'node:fs';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { ConnectionOptions, Socket, Status } from '../src/connection';
 import { Connection } from '../src/connection';
+import { ApiError } from '../src/refusal';
 
 class FakeSocket implements Socket {
   binaryType: BinaryType = 'blob';
@@ -148,6 +149,38 @@ describe('Connection', () => {
     expect(statuses).toEqual(['connecting', 'waiting']);
     await vi.advanceTimersByTimeAsync(250);
     expect(sockets.length).toBe(1);
+  });
+
+  it('says once, and asks no more, what the service refuses for good', async () => {
+    const told: unknown[] = [];
+    locate.mockRejectedValue(new ApiError(404, 'No rig is called nobody.'));
+    const connection = connect({ onStatus: (...how) => told.push(how) });
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect(locate).toHaveBeenCalledOnce();
+    expect(told).toEqual([
+      ['connecting', '', 0],
+      ['closed', 'No rig is called nobody.', 404],
+    ]);
+    locate.mockResolvedValue('ws://face');
+    connection.connect();
+    await settled();
+    expect(sockets.length).toBe(1);
+  });
+
+  it.each([0, 408, 409, 429, 500, 503])('asks again after %d', async (status) => {
+    locate.mockRejectedValueOnce(new ApiError(status, 'Not now.'));
+    connect();
+    await vi.advanceTimersByTimeAsync(250);
+    expect([locate.mock.calls.length, sockets.length]).toEqual([2, 1]);
+  });
+
+  it('leaves a service alone for as long as it asks, and then a little', async () => {
+    locate.mockRejectedValueOnce(new ApiError(429, 'Many faces move.', 5));
+    connect();
+    await vi.advanceTimersByTimeAsync(5249);
+    expect(locate).toHaveBeenCalledOnce();
+    await vi.advanceTimersByTimeAsync(1);
+    expect(locate).toHaveBeenCalledTimes(2);
   });
 
   it('stays closed when the service speaks another version', async () => {

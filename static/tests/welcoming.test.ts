@@ -7,6 +7,7 @@ import type { Opening } from '../src/app/opening';
 import type { Told } from '../src/app/told';
 import { Welcoming } from '../src/app/welcoming';
 import type { Hello } from '../src/protocol';
+import { ApiError } from '../src/refusal';
 import { ViewerState } from '../src/state/viewer.svelte';
 
 const HELLO = { type: 'hello', session: 's', rig: 'r', surface: '/r.glb' } as Hello;
@@ -15,6 +16,8 @@ describe('Welcoming', () => {
   let shown = 0;
   let described: string[] = [];
   let working = false;
+  let failure: Error;
+  let given: unknown[] = [];
   const make = (): Welcoming => {
     const opening = { session: '', isGuest: false, countViewers: () => Promise.resolve() };
     const stage = {
@@ -22,7 +25,7 @@ describe('Welcoming', () => {
       loading: false,
       show: (address: string) => {
         shown++;
-        if (!working) return Promise.reject(new Error('The service is busy.'));
+        if (!working) return Promise.reject(failure);
         stage.address = address;
         return Promise.resolve();
       },
@@ -45,11 +48,13 @@ describe('Welcoming', () => {
       stage as unknown as OnStage,
       told as unknown as Told,
       'high',
+      (error) => given.push(error),
     );
   };
 
   beforeEach(() => {
-    [shown, described, working] = [0, [], false];
+    [shown, described, working, given] = [0, [], false, []];
+    failure = new Error('The service is busy.');
     vi.useFakeTimers();
     vi.stubGlobal('document', { body: { classList: { toggle: () => undefined } } });
   });
@@ -69,6 +74,13 @@ describe('Welcoming', () => {
     }
     expect([asked[0], asked[2], asked[6], asked[14]]).toEqual([2, 3, 4, 5]);
     expect(asked.at(-1)).toBe(5);
+  });
+
+  it('gives up at once what is refused for good', async () => {
+    failure = new ApiError(404, 'No rig is called r.');
+    await make().take(HELLO);
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect([shown, given]).toEqual([1, [failure]]);
   });
 
   it('asks once at a time where the line broke while it waited', async () => {

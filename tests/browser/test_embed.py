@@ -130,6 +130,6 @@ def test_faces_stand_on_a_page_of_another_origin_by_tickets(
             stranger = page.locator("#none")
             playwright_api.expect(stranger).to_have_attribute("state", "locked", timeout=60_000)
             page.request.delete(f"{api}/{two}", headers=BEARER)
-            over = re.compile("waiting|locked")
+            over = re.compile("closed|locked")
             playwright_api.expect(other).to_have_attribute("state", over, timeout=60_000)
             playwright_api.expect(face).to_have_attribute("state", "ready")

@@ -54,6 +54,47 @@ def test_an_embed_without_webgl_says_so_to_the_page_around(
         page.close()
 
 
+def test_an_embed_says_once_what_is_refused_for_good_and_tries_again_what_passes(
+    browser: playwright_api.Browser, url: str
+) -> None:
+    page = browser.new_page()
+    asked: list[str] = []
+
+    def answer(route: playwright_api.Route) -> None:
+        rig = route.request.post_data_json["rig"]
+        asked.append(rig)
+        if rig == "nobody":
+            route.fallback()
+            return
+        full = {"error": "at_capacity", "message": "start more of them"}
+        route.fulfill(status=429, headers={"Retry-After": "1"}, json=full)
+
+    try:
+        html = """<risorius-face rig=nobody></risorius-face>
+        <risorius-face rig=amara></risorius-face><script>
+        addEventListener('face', ({target, detail}) => target.words = detail.words, true)</script>
+        <script type=module src=/embed.js></script>"""
+        page.route("**/a-chat", lambda route: route.fulfill(content_type="text/html", body=html))
+        page.route("**/api/sessions", answer)
+        page.goto(f"{url}/a-chat")
+        gone, full = page.locator("risorius-face").all()
+        expect(gone).to_have_attribute("state", "closed", timeout=30_000)
+        expect(full).to_have_attribute("state", "waiting", timeout=30_000)
+        assert "nobody" in gone.evaluate("face => face.words")
+        assert full.evaluate("face => face.words") == "start more of them"
+        inside = [face.frame_locator("iframe").locator("#curtain p") for face in (gone, full)]
+        expect(inside[0]).to_have_text("This face is not here.")
+        expect(inside[1]).to_have_text("No face is free just now. One moment, please.")
+        for _ in range(300):
+            if asked.count("amara") > 2:
+                break
+            page.wait_for_timeout(100)
+        assert asked.count("amara") > 2
+        assert asked.count("nobody") == 1
+    finally:
+        page.close()
+
+
 def test_a_face_that_was_not_given_at_once_is_asked_for_again(
     page: playwright_api.Page, url: str
 ) -> None:

@@ -3,6 +3,7 @@
 import type { Commands } from '../commands';
 import type { Connection } from '../connection';
 import type { ViewerState } from '../state/viewer.svelte';
+import { curtain } from './curtain';
 
 const TELL_MS = 250;
 
@@ -33,8 +34,11 @@ export function embed(
     // Between two attempts nothing is better than before them.
     const held = viewer.status === 'connecting' && last === 'waiting';
     const open = isReady() && viewer.status === 'open';
-    const state = !seen ? 'resting' : open ? 'ready' : held ? last : stateOf(viewer);
+    const over = viewer.isRefused;
+    const state = !seen && !over ? 'resting' : open ? 'ready' : held ? last : stateOf(viewer);
     last = state;
+    // The last picture of a face that is gone would pass for one that is there.
+    if (over) curtain.close();
     if (open) {
       asked?.();
       asked = null;
@@ -62,8 +66,11 @@ export function embed(
     const now = entry?.isIntersecting ?? true;
     if (now === seen) return;
     seen = now;
-    if (seen) connection.connect();
-    else connection.close();
+    // What was refused for good is not asked for again at every turn of the page.
+    if (!viewer.isRefused) {
+      if (seen) connection.connect();
+      else connection.close();
+    }
     tell();
   }).observe(document.body);
 }

@@ -1,7 +1,7 @@
 // What the page lists beside the face: people to meet, and where expressions lie among feelings.
 
 import type { Api } from '../api';
-import { ApiError } from '../api';
+import { ApiError } from '../refusal';
 import { readable } from '../state/rig';
 import type { ViewerState } from '../state/viewer.svelte';
 

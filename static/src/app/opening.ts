@@ -1,8 +1,8 @@
 // Which session the page is on: found or opened, with a key or a ticket, and handed on as a link.
 
 import type { Api, SessionInfo } from '../api';
-import { ApiError } from '../api';
 import { mark } from '../marks';
+import { ApiError } from '../refusal';
 import { starting } from '../state/loading';
 import type { ViewerState } from '../state/viewer.svelte';
 import type { PageOptions } from '../url';

@@ -1,7 +1,7 @@
 // What sliders, emotions and the FACS field do.
 
 import type { Api } from '../api';
-import { ApiError } from '../api';
+import { ApiError } from '../refusal';
 import type { Commands } from '../commands';
 import type { Actions } from '../state/actions';
 import { unitsOf } from '../state/facs';

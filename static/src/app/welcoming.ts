@@ -5,6 +5,7 @@ import type { Level } from '../level';
 import { atLevel } from '../level';
 import { mark } from '../marks';
 import type { Hello } from '../protocol';
+import { isFinal } from '../refusal';
 import type { ViewerState } from '../state/viewer.svelte';
 import { curtain } from './curtain';
 import type { OnStage } from './on-stage';
@@ -29,6 +30,8 @@ export class Welcoming {
     private readonly stage: OnStage,
     private readonly told: Told,
     private readonly level: Level,
+    /** The face that the page is on can never be shown. */
+    private readonly giveUp: (error: unknown) => void,
   ) {}
 
   /** @param tries how often the face of this hello was asked for in vain. */
@@ -61,7 +64,8 @@ export class Welcoming {
       viewer.step = null;
       void stage.finish();
       viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
-      this.tryAgain(hello, tries);
+      if (!isFinal(error)) this.tryAgain(hello, tries);
+      else if (hello.type === 'hello') this.giveUp(error);
     }
   }
 

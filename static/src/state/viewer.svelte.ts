@@ -50,7 +50,12 @@ const NOTICE_MS = 9000;
 
 export class ViewerState {
   status = $state<'connecting' | 'open' | 'waiting' | 'closed'>('connecting');
+  /** Why it is waiting or closed, as the service says it; empty where it was left on purpose. */
   detail = $state('');
+  /** The answer of the service that this is about; 0 where there was none. */
+  answer = $state(0);
+  /** The page stands in an element of another page, whose visitors read less than its author. */
+  embedded = $state(false);
   session = $state('');
   /** Name or id that the session was opened on, e.g. `standard`. */
   rigName = $state('');
@@ -114,6 +119,11 @@ export class ViewerState {
   /** Tissue and muscle numbers that were edited here, by `dermis.stiffness_low` or `muscle.force_scale`. */
   edits = $state<Numbers>({});
   private fading: ReturnType<typeof setTimeout> | undefined;
+
+  /** Whether the service refused for good what the page asks for: it does not ask again by itself. */
+  get isRefused(): boolean {
+    return this.status === 'closed' && this.detail !== '';
+  }
 
   /** Show a sentence for a while; an empty one takes the last away. */
   say(sentence: string): void {
