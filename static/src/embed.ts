@@ -51,16 +51,31 @@ class RisoriusFace extends HTMLElement {
   private play(): void {
     if (!this.ready) return;
     const label = this.getAttribute('emotion') ?? '';
-    const intensity = Number(this.getAttribute('intensity') ?? 1);
+    const given = this.getAttribute('intensity')?.trim() ?? '';
+    const intensity = given === '' ? 1 : Number(given);
+    if (!Number.isFinite(intensity)) {
+      this.refuse(`intensity is "${given}"; expected a number from 0 to 1`);
+      return;
+    }
     this.frame.contentWindow?.postMessage(
       { risorius: 'emotion', label, intensity },
       SERVICE.origin,
     );
   }
 
+  /** Tell the page what its face will not do, and the names that it would have understood; it stays as it is. */
+  private refuse(words: string, known: unknown = []): void {
+    const names = Array.isArray(known) && known.length > 0 ? ` It knows: ${known.join(', ')}.` : '';
+    // Who writes the page looks there first.
+    // eslint-disable-next-line no-console
+    console.warn(`<risorius-face>: ${words.replace(/\.?$/, '.')}${names}`);
+    this.dispatchEvent(new CustomEvent('refused', { detail: { words, known } }));
+  }
+
   private readonly hear = ({ source, origin, data }: MessageEvent): void => {
     if (source !== this.frame.contentWindow || origin !== SERVICE.origin) return;
-    const { risorius, state, session, words } = data as Record<string, unknown>;
+    const { risorius, state, session, words, known } = data as Record<string, unknown>;
+    if (risorius === 'refused') this.refuse(String(words), known);
     if (risorius !== 'state') return;
     this.setAttribute('state', String(state));
     if (state === 'ready' && !this.ready) {

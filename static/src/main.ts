@@ -6,7 +6,7 @@ import { editByPointer } from './app/handle-pointer';
 import { HeatOverlay } from './app/heat-overlay';
 import { insideActions } from './app/inside-actions';
 import { LayerOverlay } from './app/layer-overlay';
-import { embed, tellAround } from './app/embedding';
+import { embed, tellAround, tellRefused } from './app/embedding';
 import { loadFeelings, loadPeople } from './app/lists';
 import { mountControls, mountCurtain } from './app/mounting';
 import { MuscleEditing } from './app/muscle-editing';
@@ -64,6 +64,7 @@ const connection: Connection = new Connection({
   },
   onTrouble: (trouble) => {
     viewer.say(trouble.message);
+    if (page.embed) tellRefused(trouble);
   },
   onStatus: (status, detail, answer) => {
     viewer.status = status;

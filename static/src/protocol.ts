@@ -97,6 +97,8 @@ export interface ErrorMessage {
   type: 'error';
   error: string;
   message: string;
+  /** Names that would have been accepted. */
+  known?: string[];
 }
 
 /** A command was obeyed, but not in every point. */

@@ -116,6 +116,16 @@ def test_faces_stand_on_a_page_of_another_origin_by_tickets(
             face.evaluate("face => face.setAttribute('emotion', 'joy')")
             until(page, lambda: felt(page, f"{api}/{one}") == "joy")
             until(page, lambda: felt(page, f"{api}/{two}") == "anger")
+            # What it does not know it says, and it stays as it was.
+            face.evaluate("face => face.addEventListener('refused', e => face.refused = e.detail)")
+            for attribute, wrong in (("intensity", "strong"), ("emotion", "flurbl")):
+                with page.expect_console_message(lambda said: said.type == "warning") as warning:
+                    face.evaluate("(face, to) => face.setAttribute(...to)", [attribute, wrong])
+                assert wrong in warning.value.text
+                assert wrong in face.evaluate("face => face.refused.words")
+                face.evaluate("face => face.removeAttribute('intensity')")
+            assert "anger" in face.evaluate("face => face.refused.known")
+            assert felt(page, f"{api}/{one}") == "joy"
             page.evaluate("() => window.scrollTo(0, 2000)")
             playwright_api.expect(face).to_have_attribute("state", "resting", timeout=60_000)
             until(

@@ -2,6 +2,7 @@
 
 import type { Commands } from '../commands';
 import type { Connection } from '../connection';
+import type { ErrorMessage } from '../protocol';
 import type { ViewerState } from '../state/viewer.svelte';
 import { curtain } from './curtain';
 
@@ -13,9 +14,16 @@ interface Wish {
   intensity?: unknown;
 }
 
+type Refused = Pick<ErrorMessage, 'message' | 'known'>;
+
 /** Tell the page around how the face is: whoever shows it may know, there is nothing secret in it. */
 export function tellAround(how: { state: string; session: string; words: string }): void {
   window.parent.postMessage({ risorius: 'state', ...how }, '*');
+}
+
+/** Tell it also what the face was asked for and does not do. */
+export function tellRefused({ message: words, known = [] }: Refused): void {
+  window.parent.postMessage({ risorius: 'refused', words, known }, '*');
 }
 
 /** Stand in the element, as long as the page lives. */
