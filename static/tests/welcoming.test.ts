@@ -18,6 +18,8 @@ describe('Welcoming', () => {
   let working = false;
   let failure: Error;
   let given: unknown[] = [];
+  /** What a face on its way waits for. */
+  let slow: Promise<void> | null = null;
   const make = (): Welcoming => {
     const opening = { session: '', isGuest: false, countViewers: () => Promise.resolve() };
     const stage = {
@@ -25,9 +27,12 @@ describe('Welcoming', () => {
       loading: false,
       show: (address: string) => {
         shown++;
+        stage.loading = true;
         if (!working) return Promise.reject(failure);
         stage.address = address;
-        return Promise.resolve();
+        return (slow ?? Promise.resolve()).then(() => {
+          stage.loading = false;
+        });
       },
       finish: () => Promise.resolve(),
     };
@@ -53,7 +58,7 @@ describe('Welcoming', () => {
   };
 
   beforeEach(() => {
-    [shown, described, working, given] = [0, [], false, []];
+    [shown, described, working, given, slow] = [0, [], false, [], null];
     failure = new Error('The service is busy.');
     vi.useFakeTimers();
     vi.stubGlobal('document', { body: { classList: { toggle: () => undefined } } });
@@ -81,6 +86,34 @@ describe('Welcoming', () => {
     await make().take(HELLO);
     await vi.advanceTimersByTimeAsync(60_000);
     expect([shown, given]).toEqual([1, [failure]]);
+  });
+
+  it('leaves a face that the page has gone on from while it was on its way', async () => {
+    const welcoming = make();
+    working = true;
+    let arrive = (): void => undefined;
+    slow = new Promise((resolve) => (arrive = resolve));
+    const before = welcoming.take(HELLO);
+    slow = null;
+    await welcoming.take({ ...HELLO, session: 't', rig: 'newer', surface: '/newer.glb' } as Hello);
+    let resumed = 0;
+    welcoming.resume = () => resumed++;
+    arrive();
+    await before;
+    expect([described, resumed]).toEqual([['newer'], 0]);
+  });
+
+  it('describes the rig that an edit moved the session to while its face was on its way', async () => {
+    const welcoming = make();
+    working = true;
+    let arrive = (): void => undefined;
+    slow = new Promise((resolve) => (arrive = resolve));
+    const taken = welcoming.take(HELLO);
+    slow = null;
+    await welcoming.take({ ...HELLO, type: 'rig', rig: 'edited' } as Hello);
+    arrive();
+    await taken;
+    expect(described).toEqual(['edited']);
   });
 
   it('asks once at a time where the line broke while it waited', async () => {

@@ -20,6 +20,10 @@ const TRY_AGAIN_MS = 1000;
 export class Welcoming {
   /** Asks of a new face what the one before it did, so that two rigs can be compared. */
   resume: (() => void) | null = null;
+  /** The last hello, or the last word of an edit: a slow face that comes later than it is not what the page is on. */
+  private newest: Hello | null = null;
+  /** The session whose face the panels describe. */
+  private described = '';
   /** When what was asked for in vain is asked for again. */
   private again: ReturnType<typeof setTimeout> | undefined;
 
@@ -40,6 +44,7 @@ export class Welcoming {
     const { api, viewer, opening, stage, told } = this;
     // It asks for the face itself: a line that broke while that was waited for would have it asked for twice.
     if (hello.type === 'hello') clearTimeout(this.again);
+    this.newest = hello;
     viewer.session = opening.session = hello.session;
     viewer.locked = '';
     viewer.keyed = api.key !== '' || api.ticket !== '';
@@ -56,17 +61,38 @@ export class Welcoming {
       // A live edit moves the session to another rig on the same surface; only a true hello may change it.
       if (hello.type === 'hello' && address !== stage.address) await stage.show(address);
       else if (!stage.loading) viewer.step = null;
-      if (hello.rig !== told.rigId) await told.showRig(hello.rig, hello.type === 'hello');
-      this.resume?.();
-      this.resume = null;
+      // The hello whose face is on its way describes the rig of that edit too.
+      else if (hello.type === 'rig') return;
+      if (!this.isLeft(hello)) await this.describe(hello);
+      if (!this.isLeft(hello)) {
+        this.resume?.();
+        this.resume = null;
+      }
+      // The next face may be the same head, on its way for both.
       void stage.finish();
     } catch (error) {
+      const left = this.isLeft(hello);
+      if (left && stage.address !== '') return;
       viewer.step = null;
       void stage.finish();
       viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
-      if (!isFinal(error)) this.tryAgain(hello, tries);
+      if (!isFinal(error)) this.tryAgain(left ? (this.newest ?? hello) : hello, tries);
       else if (hello.type === 'hello') this.giveUp(error);
     }
+  }
+
+  /** Whether the page has gone on to another face since. */
+  private isLeft(hello: Hello): boolean {
+    return this.opening.session !== hello.session;
+  }
+
+  /** Describe the rig that the session is on by now. */
+  private async describe(hello: Hello): Promise<void> {
+    const { told } = this;
+    const rig = this.newest?.rig ?? hello.rig;
+    if (rig === told.rigId) return;
+    await told.showRig(rig, hello.type === 'hello' || this.described !== hello.session);
+    if (told.rigId === rig) this.described = hello.session;
   }
 
   /** Unless the page has gone on to another face meanwhile. */
@@ -75,12 +101,12 @@ export class Welcoming {
     clearTimeout(this.again);
     this.again = setTimeout(
       () => {
-        const { opening, stage, told, viewer } = this;
+        const { stage, told, viewer } = this;
         const missing = stage.address === '' || told.rigId === '';
-        if (opening.session !== hello.session || !missing) return;
+        if (this.isLeft(hello) || !missing) return;
         viewer.say('');
         // An edit may have moved the session to another rig meanwhile.
-        void this.take({ ...hello, rig: told.rigId || hello.rig }, tries + 1);
+        void this.take({ ...hello, rig: this.newest?.rig ?? hello.rig }, tries + 1);
       },
       TRY_AGAIN_MS * 2 ** tries,
     );
