@@ -3,6 +3,7 @@
 import type { BufferAttribute, BufferGeometry, Mesh, MeshStandardMaterial, Object3D } from 'three';
 import { Float32BufferAttribute, MathUtils, Vector3 } from 'three';
 import type { EyeSetting } from './eye-shader';
+import { addFringe, FRINGE } from './fringe';
 import { meshes, nodeName, plainArray } from './gltf-nodes';
 import { createMaterial } from './materials';
 import { strandSides } from './strand-sides';
@@ -19,8 +20,8 @@ const DARKEST = { wet: 0.4, teeth: 0.6 };
 const NECK_BELOW = -0.14;
 const NECK_END = 13;
 const NECK_FADE = 60;
-/** What is blended comes after what is opaque: skin, which fades at the neck, then corneas, then hair over both. */
-const DRAWN_AFTER: Record<string, number> = { skin: 1, cornea: 2, hair: 3 };
+/** What is blended comes after what is opaque: skin, which fades at the neck, then corneas, then hair over both, its thin parts last. */
+const DRAWN_AFTER: Record<string, number> = { skin: 1, cornea: 2, hair: 3, [FRINGE]: 4 };
 
 /** Give every mesh its material, its shadow and its place in the drawing order. */
 export function dress(
@@ -36,19 +37,23 @@ export function dress(
     if (inMouth) darkenThroat(mesh, DARKEST[kind]);
     mesh.visible = mesh.userData.role !== 'tissue';
     const { map } = mesh.material as MeshStandardMaterial;
-    mesh.material = createMaterial(kind, {
+    const setting = {
       vertexColors: mesh.geometry.hasAttribute('color'),
       map,
       inMouth,
       neckFade,
       maps: mesh.geometry.hasAttribute('uv') ? maps : null,
       eye: eyeOf(mesh, eyes),
-    });
+    };
+    mesh.material = createMaterial(kind, setting);
     mesh.castShadow = kind !== 'cornea' && kind !== 'eye';
     mesh.receiveShadow = true;
     mesh.frustumCulled = false;
     mesh.renderOrder = DRAWN_AFTER[kind] ?? 0;
     if (kind === 'hair') addStrandAttributes(mesh);
+    if (kind === 'hair' && map !== null) {
+      addFringe(mesh, createMaterial(FRINGE, setting), DRAWN_AFTER[FRINGE]!);
+    }
     if (kind === 'skin') {
       const positions = mesh.geometry.getAttribute('position');
       mesh.geometry.setAttribute('restPosition', positions.clone());

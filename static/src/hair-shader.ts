@@ -1,5 +1,5 @@
 // What hair adds to three's standard shader: the two highlights along its strands, light that shines through,
-// strands that are never thinner than a pixel, and the soft cut of its cards.
+// strands that are never thinner than a pixel, and where cards are solid and where thin.
 
 import { ShaderChunk } from 'three';
 import type { Program } from './shader-edit';
@@ -79,29 +79,42 @@ material.specularColorBlended *= 0.35;
 material.specularF90 *= 0.25;
 `;
 
+/** Hair that covers more of a pixel than this covers all of it. */
+const SOLID = '0.7';
+
 /**
- * Cards seen edge on would draw a hard line. What is left is cut as finely as the samples of a pixel allow, and steeply:
- * one card behind the other covers the same samples, so that what is half thin stays so however many there are.
+ * Cards seen edge on would draw a hard line. Where hair is solid it is drawn first and hides what is behind it; what is
+ * thinner is drawn after it, and blended: see fringe.ts.
  */
 const CUT = /* glsl */ `
 #ifdef USE_MAP
   vec3 cardFaces = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));
   diffuseColor.a *= smoothstep(0.0, 0.24, abs(dot(cardFaces, normalize(vViewPosition))));
-  diffuseColor.a = smoothstep(0.05, 0.72, diffuseColor.a);
-  if (diffuseColor.a < 0.04) discard;
+  diffuseColor.a = min(diffuseColor.a * 1.25, 1.0);
+  bool solid = diffuseColor.a > ${SOLID};
+  if (solid == fringe || diffuseColor.a < 0.02) discard;
+  if (solid) diffuseColor.a = 1.0;
 #endif
 `;
+
+/** What of hair a program draws. */
+export interface HairUniforms {
+  /** Whether it is drawn on cards, not strand by strand. */
+  cards: boolean;
+  /** Height of the picture [px]; cards do not ask. */
+  drawnHeight: { value: number };
+  /** Draw what of cards is thin, not what is solid; strands do not ask. */
+  fringe: { value: boolean };
+}
 
 /**
  * Change the program of a physical material into hair. Needs the attributes of hair-attributes: `strandTangent`, and
  * `strandSide` for single strands.
  * @throws Error when three's shader no longer has a line that is replaced here.
  */
-export function makeHair(
-  program: Program,
-  { cards, drawnHeight }: { cards: boolean; drawnHeight: { value: number } },
-): void {
+export function makeHair(program: Program, { cards, drawnHeight, fringe }: HairUniforms): void {
   program.uniforms.drawnHeight = drawnHeight;
+  program.uniforms.fringe = fringe;
   const cut: [string, string][] = cards ? [['#include <alphatest_fragment>', CUT]] : [];
   const strandOnly: [string, string][] = cards ? [] : [['#include <project_vertex>', WIDEN]];
   program.vertexShader = replaced(program.vertexShader, [
@@ -115,19 +128,30 @@ export function makeHair(
   program.fragmentShader = replaced(program.fragmentShader, [
     [
       '#include <common>',
-      `#include <common>\n${cards ? '' : 'varying float vCover;'}\nfloat strandTone = 0.78;\nfloat strandGlow = 1.0;`,
+      `#include <common>\n${cards ? 'uniform bool fringe;' : 'varying float vCover;'}\nfloat strandTone = 0.78;\nfloat strandGlow = 1.0;`,
     ],
     [
       '#include <map_fragment>',
       '#include <map_fragment>\n#ifdef USE_MAP\nstrandTone = sampledDiffuseColor.r;\n#else\ndiffuseColor.a *= vCover;\n#endif',
     ],
     ...cut,
+    ['#include <lights_fragment_maps>', glowOfRoom()],
     ['#include <normal_fragment_begin>', unflippedNormals()],
     [
       '#include <lights_physical_pars_fragment>',
       `#include <lights_physical_pars_fragment>\n${LIGHT}`,
     ],
     ['#include <lights_physical_fragment>', SCATTER],
+  ]);
+}
+
+/** As rough as hair is, its mirror of the room is as soft as its shade: one look at the room does for both. */
+function glowOfRoom(): string {
+  return replaced(ShaderChunk.lights_fragment_maps, [
+    [
+      'vec3 iblRadiance = getIBLRadiance( geometryViewDir, geometryNormal, material.roughness );',
+      'vec3 iblRadiance = iblIrradiance * RECIPROCAL_PI;',
+    ],
   ]);
 }
 

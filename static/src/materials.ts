@@ -3,15 +3,16 @@
 import type { Material, MeshPhysicalMaterialParameters, Texture } from 'three';
 import {
   AdditiveBlending,
-  CustomBlending,
   DoubleSide,
+  LessDepth,
   MeshPhysicalMaterial,
-  OneFactor,
+  NoBlending,
+  NormalBlending,
   Vector2,
-  ZeroFactor,
 } from 'three';
 import type { EyeSetting } from './eye-shader';
 import { makeCornea, makeEyeball } from './eye-shader';
+import { FRINGE } from './fringe';
 import { makeHair } from './hair-shader';
 import { makeCornerFlesh, makeOral } from './mouth-shader';
 import { createPores } from './pores';
@@ -77,7 +78,10 @@ export function createMaterial(
         envMapIntensity: 0.5,
       });
     case 'hair':
-      return map === null ? strands(vertexColors) : cards(vertexColors, map);
+      return map === null ? strands(vertexColors) : cards(vertexColors, map, false);
+    case FRINGE:
+      if (map === null) throw new Error('A fringe is cut out of a picture of hair.');
+      return cards(vertexColors, map, true);
     default:
       return skin(vertexColors, neckFade, maps);
   }
@@ -140,13 +144,13 @@ function strands(vertexColors: boolean): Material {
     drawnHeight.value = renderer.getDrawingBufferSize(size).y;
   };
   material.onBeforeCompile = (program) => {
-    makeHair(program, { cards: false, drawnHeight });
+    makeHair(program, { cards: false, drawnHeight, fringe: { value: false } });
   };
   return material;
 }
 
-/** Cards hide what is behind them as far as samples of a pixel can, in any order. */
-function cards(vertexColors: boolean, map: Texture): Material {
+/** The solid of cards, in any order; their thin parts are blended over it: see fringe.ts. */
+function cards(vertexColors: boolean, map: Texture, fringe: boolean): Material {
   map.anisotropy = 2;
   const material = new MeshPhysicalMaterial({
     vertexColors,
@@ -154,21 +158,20 @@ function cards(vertexColors: boolean, map: Texture): Material {
     map,
     roughness: 0.75,
     side: DoubleSide,
-    alphaToCoverage: true,
     alphaTest: 0.35,
-    // A sample is all card, whatever part of the pixel the card covers; where the page lies behind the
-    // picture, the skin under the card must stay as solid as it was. Skin that fades at the neck is
-    // drawn with what is transparent, so that cards, which come after it, must be too.
+    // In two draws those faces that are seen from behind would be lit from behind.
+    forceSinglePass: true,
+    // Skin that fades at the neck is drawn with what is transparent, so that cards, which come after it,
+    // must be too.
     transparent: true,
-    blending: CustomBlending,
-    blendSrc: OneFactor,
-    blendDst: ZeroFactor,
-    blendSrcAlpha: OneFactor,
-    blendDstAlpha: OneFactor,
+    blending: fringe ? NormalBlending : NoBlending,
+    depthWrite: !fringe,
+    depthFunc: LessDepth,
   });
   material.onBeforeCompile = (program) => {
-    makeHair(program, { cards: true, drawnHeight: { value: 0 } });
+    makeHair(program, { cards: true, drawnHeight: { value: 0 }, fringe: { value: fringe } });
   };
+  // One program draws both.
   material.customProgramCacheKey = () => 'hair cards';
   return material;
 }

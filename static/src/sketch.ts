@@ -2,6 +2,7 @@
 
 import type { Material, MeshStandardMaterial, Object3D, ShaderMaterial, Texture } from 'three';
 import { BufferGeometry, Color, DataTexture, Float32BufferAttribute, Group, Mesh } from 'three';
+import { FRINGE } from './fringe';
 import { sketchMaterial } from './sketch-material';
 
 /** Where a surface brings no colours: flesh, and hair. */
@@ -11,7 +12,7 @@ const HAIR = 0x2a1a12;
 const SKIN_GAIN = 1.3;
 const HAIR_GAIN = 2.4;
 /** What its own materials darken or see through stays out of a sketch. */
-const LEFT_OUT = ['cornea', 'wet'];
+const LEFT_OUT = ['cornea', 'wet', FRINGE];
 
 /**
  * Put plain materials on all that is seen of a face.

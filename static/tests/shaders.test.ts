@@ -5,7 +5,6 @@ import { AgXToneMapping, ShaderChunk, ShaderLib } from 'three';
 import { describe, expect, it } from 'vitest';
 import type { Program } from '../src/shader-edit';
 import { EyeSetting, makeCornea, makeEyeball } from '../src/eye-shader';
-import { makeHair } from '../src/hair-shader';
 import { makeOral } from '../src/mouth-shader';
 import { makeSkin } from '../src/skin-shader';
 import { exposeSkin } from '../src/tone';
@@ -103,18 +102,5 @@ describe('the tone curve', () => {
     exposeSkin(renderer);
     expect(renderer.toneMapping).toBe(AgXToneMapping);
     expect(ShaderChunk.tonemapping_pars_fragment.split('0.2126, 0.7152').length).toBe(2);
-  });
-});
-
-describe('the program of hair cards', () => {
-  it('cuts steeply, without grain, which a bright page shows as a speckled rim', () => {
-    const program = physical();
-    makeHair(program, { cards: true, drawnHeight: { value: 0 } });
-    const [least, whole] = /a = smoothstep\((0\.\d+), (0\.\d+), diffuseColor\.a\)/
-      .exec(program.fragmentShader)!
-      .slice(1)
-      .map(Number) as [number, number];
-    expect(whole - least).toBeLessThan(0.8);
-    expect(program.fragmentShader).not.toContain('float grain');
   });
 });
