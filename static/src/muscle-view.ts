@@ -1,15 +1,12 @@
 // The muscles drawn over the face: bundles of fibres that go with the skin and glow as they contract.
 
-import {
-  BufferGeometry,
-  DynamicDrawUsage,
-  Float32BufferAttribute,
-  Mesh,
-  ShaderMaterial,
-} from 'three';
+import type { ShaderMaterial } from 'three';
+import { BufferGeometry, DynamicDrawUsage, Float32BufferAttribute, Mesh } from 'three';
+import { evenAround } from './around';
 import { fibresOn } from './draped';
 import type { Ground } from './ground';
 import { nearestPoint } from './ground';
+import { createFlesh } from './muscle-flesh';
 import type { Fibre, MuscleForm, Point } from './muscle-shape';
 import { outward } from './muscle-shape';
 import type { Ride } from './riding';
@@ -27,8 +24,9 @@ const STILL = 2e-3;
 
 interface Vertex {
   muscle: number;
-  /** Streamed point that it goes with. */
+  /** Streamed point that it goes with; of a ring its place among those of all rings. */
   tied: number;
+  onRing: boolean;
   follows: number;
   /** By how much of the jaw the bone end of its fibre rides, and where the skin end is at rest [mm]. */
   rides: number;
@@ -39,6 +37,8 @@ export class MuscleView {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly names: string[];
   private readonly vertices: Vertex[] = [];
+  /** Of each ring the streamed points that its own go with. */
+  private readonly rings: number[][] = [];
   /** [mm] */
   private readonly rest: Float32Array;
   private readonly shown: Float32Array;
@@ -61,6 +61,8 @@ export class MuscleView {
     geometry.setIndex(built.index);
     geometry.setAttribute('position', moving(built.positions, 3));
     geometry.setAttribute('normal', new Float32BufferAttribute(built.normals, 3));
+    const of = this.vertices.map(({ muscle }) => muscle);
+    geometry.setAttribute('muscle', new Float32BufferAttribute(of, 1));
     geometry.setAttribute('activation', moving(new Array<number>(this.vertices.length).fill(0), 1));
     this.mesh = new Mesh(geometry, createFlesh());
     this.mesh.frustumCulled = false;
@@ -75,6 +77,11 @@ export class MuscleView {
   /** How far each muscle contracts, by name. */
   show(activations: Readonly<Record<string, number>>): void {
     this.wanted = Float32Array.from(this.names, (name) => Math.max(0, activations[name] ?? 0));
+  }
+
+  /** The muscle that is in hand stands out from the others; an empty name for none. */
+  hold(muscle: string): void {
+    this.mesh.material.uniforms.inHand!.value = this.names.indexOf(muscle);
   }
 
   /** Take the glow further; tells whether it goes on. */
@@ -98,11 +105,19 @@ export class MuscleView {
     const positions = this.mesh.geometry.getAttribute('position');
     const jaw = this.ground.jaw();
     const known = new Map<number, Ride>();
-    this.vertices.forEach(({ tied, follows, rides, end }, at) => {
+    const around = this.rings.map((points) =>
+      evenAround(
+        Float64Array.from(points.flatMap((point) => [...this.ground.displacement(point)])),
+      ),
+    );
+    const ways = Float64Array.from(around.flatMap((ring) => [...ring]));
+    this.vertices.forEach(({ tied, onRing, follows, rides, end }, at) => {
       const ride = known.get(rides) ?? rideOf(jaw, rides);
       known.set(rides, ride);
       let place: Point = [this.rest[3 * at]!, this.rest[3 * at + 1]!, this.rest[3 * at + 2]!];
-      const [x, y, z] = this.ground.displacement(tied);
+      const [x, y, z] = onRing
+        ? [ways[3 * tied]!, ways[3 * tied + 1]!, ways[3 * tied + 2]!]
+        : this.ground.displacement(tied);
       let besides: Point = [MILLIMETRES * x, MILLIMETRES * y, MILLIMETRES * z];
       if (ride !== STAY) {
         place = ride.to(place);
@@ -129,15 +144,17 @@ export class MuscleView {
     // Each point of a ring goes with the skin over it; all of a straight fibre with its bone, and with its skin end.
     const end = points.at(-1)!;
     const under = nearestPoint(this.ground, end);
+    const before = this.rings.flat().length;
+    if (spread) this.rings.push(points.map((point) => nearestPoint(this.ground, point)));
     points.forEach((point, at) => {
-      const tied = spread ? nearestPoint(this.ground, point) : under;
+      const tied = spread ? before + at : under;
       const [out, aside] = frameAt(points, at);
       for (let side = 0; side < SIDES; side++) {
         const angle = (2 * Math.PI * side) / SIDES;
         const normal = out.map((o, axis) => o * Math.cos(angle) + aside[axis]! * Math.sin(angle));
         built.normals.push(...normal);
         built.positions.push(...point.map((p, axis) => p + radii[at]! * normal[axis]!));
-        this.vertices.push({ muscle, tied, follows: follows[at]!, rides, end });
+        this.vertices.push({ muscle, tied, onRing: spread, follows: follows[at]!, rides, end });
       }
       if (at === 0) return;
       for (let side = 0; side < SIDES; side++) {
@@ -172,45 +189,4 @@ function moving(values: number[], size: number): Float32BufferAttribute {
   const attribute = new Float32BufferAttribute(values, size);
   attribute.setUsage(DynamicDrawUsage);
   return attribute;
-}
-
-function createFlesh(): ShaderMaterial {
-  return new ShaderMaterial({
-    transparent: true,
-    vertexShader: /* glsl */ `
-      attribute float activation;
-      varying float vActivation;
-      varying vec3 vNormal;
-      varying float vFacing;
-      varying vec3 vPlace;
-      void main() {
-        vActivation = activation;
-        vPlace = position;
-        vNormal = normalize(normalMatrix * normal);
-        vec4 seen = modelViewMatrix * vec4(position, 1.0);
-        // What lies on the far side of the head is not seen through it.
-        vec3 out3 = normalize(normalMatrix * normalize(vec3(position.x, 0.0, position.z)));
-        vFacing = dot(out3, normalize(-seen.xyz));
-        gl_Position = projectionMatrix * seen;
-      }`,
-    fragmentShader: /* glsl */ `
-      varying float vActivation;
-      varying vec3 vNormal;
-      varying float vFacing;
-      varying vec3 vPlace;
-      void main() {
-        float power = clamp(vActivation, 0.0, 1.2);
-        vec3 slack = vec3(0.30, 0.065, 0.05);
-        vec3 tight = vec3(1.0, 0.27, 0.06);
-        vec3 hot = vec3(1.0, 0.72, 0.32);
-        vec3 color = mix(slack, tight, smoothstep(0.0, 0.6, power));
-        color = mix(color, hot, smoothstep(0.5, 1.1, power));
-        float light = 0.38 + 0.62 * max(0.0, dot(normalize(vNormal), normalize(vec3(-0.35, 0.5, 0.8))));
-        color *= mix(light, 1.0, 0.6 * min(1.0, power));
-        float seen = smoothstep(0.0, 0.3, vFacing) * mix(0.62, 0.98, min(1.0, power * 1.6));
-        if (seen < 0.01) discard;
-        gl_FragColor = vec4(color, seen);
-        #include <colorspace_fragment>
-      }`,
-  });
 }

@@ -99,3 +99,21 @@ def test_muscles_are_seen_and_glow_as_they_contract(opened: playwright_api.Page)
     share, contracted = brought_by_muscles(page)
     assert share > 0.2
     assert contracted[0] > slack[0] + 5.0
+
+
+def test_the_muscle_in_hand_is_seen_apart_before_it_contracts(opened: playwright_api.Page) -> None:
+    page = opened
+    page.get_by_role("button", name="Neutral").click()
+    page.get_by_role("tab", name="Inside").click()
+    in_hand = page.get_by_role("combobox", name="Muscle in hand")
+    blue: dict[str, float] = {}
+    for name in ("", "orbicularis_oris"):
+        in_hand.select_option(name)
+        page.wait_for_timeout(600)
+        picture = middle(page)
+        blue[name] = float((picture[..., 2] > picture[..., 0] + 40.0).mean())
+    in_hand.select_option("")
+    switch(page, shown=False)
+    assert blue[""] < 0.001
+    # Its outline alone is less than a hundredth of the picture.
+    assert blue["orbicularis_oris"] > 0.015, blue

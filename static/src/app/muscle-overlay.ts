@@ -12,6 +12,8 @@ export class MuscleOverlay implements Overlay {
   private face: Face | null = null;
   private muscles: readonly MuscleForm[] = [];
   private view: MuscleView | null = null;
+  /** As it is drawn. */
+  private inHand = '';
 
   constructor(
     private readonly viewer: ViewerState,
@@ -36,6 +38,7 @@ export class MuscleOverlay implements Overlay {
     if (this.viewer.inside && this.face !== null && this.muscles.length > 0) {
       this.view = new MuscleView(this.muscles, groundOf(this.face));
       this.view.show(this.viewer.merged.muscles ?? {});
+      this.view.hold(this.inHand);
       this.face.carry(this.view.mesh);
     }
     this.scene.invalidate();
@@ -53,6 +56,12 @@ export class MuscleOverlay implements Overlay {
   }
 
   step(now: number): boolean {
-    return this.view?.step(now) ?? false;
+    if (this.view === null) return false;
+    const glows = this.view.step(now);
+    const { muscle } = this.viewer.within;
+    if (muscle === this.inHand) return glows;
+    this.inHand = muscle;
+    this.view.hold(muscle);
+    return true;
   }
 }

@@ -17,8 +17,9 @@ const RADIUS = 2.8e-3;
 const RIM = 3.7e-3;
 /** Of a handle: rim and ball. */
 const BALLS = 2;
-/** Of the outline [CSS px]. */
+/** Of the outline, and of the dark line under it, which holds it on bright skin [CSS px]. */
 const WIDTH = 2;
+const CASING = 4.5;
 /** Drawn after the muscles. */
 const LAST = 12;
 /** Bone, skin, and the numbers of a muscle. */
@@ -40,13 +41,24 @@ export class HandleView {
     new LineSegmentsGeometry(),
     new LineMaterial({ color: '#7fd4ff', linewidth: WIDTH, transparent: true, depthTest: false }),
   );
+  private readonly casing = new LineSegments2(
+    this.zone.geometry,
+    new LineMaterial({
+      color: '#0b1a26',
+      linewidth: CASING,
+      transparent: true,
+      opacity: 0.6,
+      depthTest: false,
+    }),
+  );
   private readonly balls = new Group();
   private readonly made: MeshBasicMaterial[] = [];
 
   constructor() {
-    this.zone.renderOrder = LAST;
-    this.zone.frustumCulled = false;
-    this.group.add(this.zone, this.balls);
+    this.casing.renderOrder = LAST;
+    this.zone.renderOrder = LAST + 1;
+    for (const line of [this.casing, this.zone]) line.frustumCulled = false;
+    this.group.add(this.casing, this.zone, this.balls);
   }
 
   /** Show the handles of a muscle, carried by the face as it stands; of none, nothing. */
@@ -54,12 +66,12 @@ export class HandleView {
     this.muscle = muscle;
     this.clear();
     this.zone.geometry.dispose();
-    this.zone.geometry = new LineSegmentsGeometry();
+    this.zone.geometry = this.casing.geometry = new LineSegmentsGeometry();
     this.handles = muscle === null ? [] : carriedHandles(muscle, by);
     for (const { along } of this.handles) {
       for (const [geometry, color, order] of [
-        [this.rim, '#15181c', LAST + 1],
-        [this.ball, COLORS[along], LAST + 2],
+        [this.rim, '#15181c', LAST + 2],
+        [this.ball, COLORS[along], LAST + 3],
       ] as const) {
         const material = new MeshBasicMaterial({
           color: new Color(color),
@@ -91,7 +103,7 @@ export class HandleView {
     const places = lines.flatMap((line) =>
       line.slice(1).flatMap((point, at) => [...line[at]!, ...point]),
     );
-    this.zone.visible = places.length > 0;
+    this.zone.visible = this.casing.visible = places.length > 0;
     const there = this.zone.geometry.getAttribute('instanceStart') as
       InterleavedBufferAttribute | undefined;
     const metres = places.map((value) => value * METRES);
@@ -116,6 +128,7 @@ export class HandleView {
     this.rim.dispose();
     this.zone.geometry.dispose();
     this.zone.material.dispose();
+    this.casing.material.dispose();
   }
 
   private clear(): void {
