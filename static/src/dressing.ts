@@ -73,7 +73,7 @@ function addStrandAttributes({ geometry }: Mesh<BufferGeometry>): void {
   const positions = plainArray(geometry.getAttribute('position'));
   const triangles = plainArray(index);
   const tangents = strandTangents(positions, triangles);
-  geometry.setAttribute('strandTangent', new Float32BufferAttribute(tangents, 3));
+  geometry.setAttribute('strandTangent', new Float32BufferAttribute(tangents, 4));
   if (geometry.hasAttribute('uv')) return; // cards are as wide as they are
   const sides = strandSides(positions, triangles);
   geometry.setAttribute('strandSide', new Float32BufferAttribute(sides, 4));

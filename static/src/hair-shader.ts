@@ -30,7 +30,15 @@ varying float vCover;`;
 
 const TANGENT = /* glsl */ `
 #include <beginnormal_vertex>
-vStrand = normalize(mat3(modelViewMatrix) * strandTangent);
+vStrand = normalize(mat3(modelViewMatrix) * strandTangent.xyz);
+`;
+
+/**
+ * Hair that is cropped short stands in all directions, root beside tip: it has no sheen along it, and cards of it that
+ * shone by themselves would lie on a dark scalp like flecks. Lengths in metres.
+ */
+const SHEEN = /* glsl */ `
+vSheen = mix(0.2, 1.0, smoothstep(0.004, 0.018, strandTangent.w));
 `;
 
 /**
@@ -64,7 +72,7 @@ void RE_Direct_Hair(const in IncidentLight light, const in vec3 position, const 
   vec3 gloss = 0.009 * white + (0.16 * brightness + 0.003) * tinted * mix(hue, vec3(1.0), 0.12);
   float behind = pow(clamp(dot(-light.direction, view) * 0.5 + 0.5, 0.0, 1.0), 6.0);
   vec3 through = 0.55 * color * behind * across;
-  reflectedLight.directSpecular += light.color * (gloss * facing + through) * strandGlow;
+  reflectedLight.directSpecular += light.color * (gloss * facing * vSheen + through);
 }
 #undef RE_Direct
 #define RE_Direct RE_Direct_Hair
@@ -120,15 +128,15 @@ export function makeHair(program: Program, { cards, drawnHeight, fringe }: HairU
   program.vertexShader = replaced(program.vertexShader, [
     [
       '#include <common>',
-      `#define LEAST_PIXELS ${LEAST_PIXELS}\n#include <common>\nattribute vec3 strandTangent;\nvarying vec3 vStrand;${cards ? '' : SIDES}`,
+      `#define LEAST_PIXELS ${LEAST_PIXELS}\n#include <common>\nattribute vec4 strandTangent;\nvarying vec3 vStrand;${cards ? '\nvarying float vSheen;' : SIDES}`,
     ],
-    ['#include <beginnormal_vertex>', TANGENT],
+    ['#include <beginnormal_vertex>', cards ? TANGENT + SHEEN : TANGENT],
     ...strandOnly,
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
     [
       '#include <common>',
-      `#include <common>\n${cards ? 'uniform bool fringe;' : 'varying float vCover;'}\nfloat strandTone = 0.78;\nfloat strandGlow = 1.0;`,
+      `#include <common>\n${cards ? 'uniform bool fringe;\nvarying float vSheen;' : 'varying float vCover;\nconst float vSheen = 1.0;'}\nfloat strandTone = 0.78;`,
     ],
     [
       '#include <map_fragment>',

@@ -1,9 +1,10 @@
-// Which way hair runs from root to tip: its highlights lie along it.
+// Which way hair runs from root to tip, and how far: its highlights lie along it, and the shorter it is, the fainter.
 
 import { strandRuns } from './strand-sides';
 
 /**
- * Direction of growth at each vertex, x y z after x y z.
+ * Direction of growth at each vertex, and the length of what it belongs to in the unit of `positions`: x y z length
+ * after x y z length.
  *
  * A strand or card is a run of vertices in pairs across it, perhaps with one at the tip; its triangles follow one
  * another.
@@ -12,17 +13,17 @@ export function strandTangents(
   positions: ArrayLike<number>,
   index: ArrayLike<number>,
 ): Float32Array {
-  const tangents = new Float32Array(positions.length);
+  const tangents = new Float32Array((positions.length / 3) * 4);
   for (const [first, last] of strandRuns(index)) {
     const rows = Math.floor((last - first) / 2) + 1;
+    const line = Array.from({ length: rows }, (_, row) => middle(positions, first, last, row));
+    const whole = line.reduce((sum, at, row) => sum + distance(at, line[Math.max(row - 1, 0)]!), 0);
     for (let row = 0; row < rows; row++) {
-      const before = middle(positions, first, last, Math.max(row - 1, 0));
-      const after = middle(positions, first, last, Math.min(row + 1, rows - 1));
-      const grown = before.map((value, axis) => after[axis]! - value);
-      const length = Math.max(Math.hypot(...grown), 1e-12);
-      for (const vertex of rowOf(first, last, row)) {
-        grown.forEach((value, axis) => (tangents[vertex * 3 + axis] = value / length));
-      }
+      const before = line[Math.max(row - 1, 0)]!;
+      const after = line[Math.min(row + 1, rows - 1)]!;
+      const length = Math.max(distance(before, after), 1e-12);
+      const tangent = before.map((value, axis) => (after[axis]! - value) / length);
+      for (const vertex of rowOf(first, last, row)) tangents.set([...tangent, whole], vertex * 4);
     }
   }
   return tangents;
@@ -39,4 +40,8 @@ function middle(positions: ArrayLike<number>, first: number, last: number, row: 
     (axis) =>
       vertices.reduce((sum, vertex) => sum + positions[vertex * 3 + axis]!, 0) / vertices.length,
   );
+}
+
+function distance(one: readonly number[], other: readonly number[]): number {
+  return Math.hypot(...one.map((value, axis) => other[axis]! - value));
 }
