@@ -5,7 +5,7 @@ import { between, cross, minus, plus, scaled, unit } from './vector';
 
 export type { Point } from './vector';
 
-/** What the service says of a muscle's form, mm in the head's frame; other kinds have no fibres. */
+/** What the service says of a muscle's form, mm in the head's frame; lids and air have no fibres. */
 export interface MuscleForm {
   name: string;
   kind?: string;
@@ -23,6 +23,9 @@ export interface MuscleForm {
   /** How far it acts from its attachment [mm], and how wide [degrees]. */
   radius?: number;
   angle?: number;
+  /** Of one that turns lids: by how much it turns the upper one down, and the lower one up [degrees]. */
+  upper?: number;
+  lower?: number;
   strength?: number;
   force_scale?: number;
   /** By how much of the jaw its bone end rides, 0 to 1. */

@@ -303,6 +303,22 @@ describe('a muscle in hand', () => {
     expect(viewer.within.forms[LINEAR.name]!.jaw_share).toBe(0.1);
   });
 
+  it('may be one of the lids, which has numbers alone; air is none', () => {
+    const { viewer, editing, changes } = inHand();
+    const lid: MuscleForm = { name: 'levator_palpebrae.L', kind: 'lid', upper: -11.5, lower: 0 };
+    const twin = { ...lid, name: 'levator_palpebrae.R' };
+    editing.use([LINEAR, lid, twin, { name: 'lip_air', kind: 'air' }], true);
+    expect(Object.keys(viewer.within.forms)).toEqual([LINEAR.name, lid.name, twin.name]);
+    editing.choose(lid.name);
+    viewer.within.mirrored = true;
+    editing.edit({ upper: -15 }, 'upper');
+    expect(changes).toEqual([{ upper: -15 }]);
+    expect(viewer.within.forms[twin.name]!.upper).toBe(-15);
+    expect(viewer.within.changed).toEqual([lid.name, twin.name]);
+    editing.reset();
+    expect(viewer.within.forms[twin.name]!.upper).toBe(-11.5);
+  });
+
   it('is put back on both sides where both are moved, and that is undone', () => {
     const { viewer, editing } = inHand();
     viewer.within.mirrored = true;

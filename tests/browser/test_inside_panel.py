@@ -140,7 +140,14 @@ def test_numbers_edit_a_muscle_and_a_new_unit_is_saved_with_it(
     opened: playwright_api.Page, url: str
 ) -> None:
     page = opened
-    page.get_by_role("combobox", name="Muscle in hand").select_option("risorius.L")
+    in_hand = page.get_by_role("combobox", name="Muscle in hand")
+    muscles = page.request.get(f"{url}/api/rigs/standard").json()["muscles"]
+    assert in_hand.locator("option").count() == 1 + sum(m["kind"] != "air" for m in muscles)
+    in_hand.select_option("levator_palpebrae.L")
+    lid = page.get_by_role("slider", name="Upper lid down")
+    assert float(lid.input_value()) == pytest.approx(-11.5)
+    assert handles(page) == {}
+    in_hand.select_option("risorius.L")
     rig = page.evaluate("() => window.__viewer.rig")
     field = page.get_by_role("spinbutton", name="Attachment y")
     value = float(field.input_value()) + 4

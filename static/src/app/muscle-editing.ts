@@ -6,11 +6,18 @@ import type { Carrier, Ground } from '../ground';
 import { carrierOf, groundOf } from '../ground';
 import type { CarriedHandle } from '../inside/carried';
 import { atRest, carriedFibre, ledAsCarried } from '../inside/carried';
-import { fieldsOf, formOf, mirroredChange, onPlane, placed, twinOf } from '../inside/editing';
+import {
+  fieldsOf,
+  formOf,
+  isMuscle,
+  mirroredChange,
+  onPlane,
+  placed,
+  twinOf,
+} from '../inside/editing';
 import { HandleView } from '../inside/handle-view';
 import { Newest } from '../inside/newest';
 import type { MuscleForm } from '../muscle-shape';
-import { fibresOf } from '../muscle-shape';
 import { SHUT } from '../riding';
 import type { Scene } from '../scene';
 import type { ViewerState } from '../state/viewer.svelte';
@@ -80,8 +87,9 @@ export class MuscleEditing implements Overlay {
   /** The rig that the face is on has these muscles. @param isNew whether it is another face. */
   use(muscles: readonly MuscleForm[], isNew: boolean): void {
     const { within } = this.parts.viewer;
-    const formed = muscles.filter((muscle) => fibresOf(muscle).length > 0);
-    this.accepted = Object.fromEntries(formed.map((muscle) => [muscle.name, muscle]));
+    this.accepted = Object.fromEntries(
+      muscles.filter(isMuscle).map((muscle) => [muscle.name, muscle]),
+    );
     if (isNew) {
       this.first = this.accepted;
       this.before.length = 0;

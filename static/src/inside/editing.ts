@@ -43,9 +43,16 @@ const FIELDS = [
   'angle',
   'semi_major',
   'semi_minor',
+  'upper',
+  'lower',
   'strength',
   'force_scale',
 ] as const;
+
+/** Whether it is a muscle that can be in hand; air in the mouth is none. */
+export function isMuscle({ kind }: MuscleForm): boolean {
+  return kind === 'linear' || kind === 'sheet' || kind === 'sphincter' || kind === 'lid';
+}
 
 export function handlesOf(muscle: MuscleForm): Handle[] {
   const handle = (id: string, label: string, place: Point, along: Along): Handle => ({
