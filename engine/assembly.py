@@ -69,9 +69,8 @@ class Assembly:
         return TABLEAUS[self.model.integrator]
 
 
-@lru_cache(maxsize=16)
 def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly:
-    """Return `rig` compiled for `model`.
+    """Return `rig` compiled for `model`, the same for the same.
 
     Args:
         rig: The rig.
@@ -81,6 +80,11 @@ def compile_rig(rig: Rig, model: Model, substeps: int | None = None) -> Assembly
     Raises:
         InvalidValue: If `substeps` is fewer than the stability bound asks for.
     """
+    return _compiled(rig, model, substeps)
+
+
+@lru_cache(maxsize=16)
+def _compiled(rig: Rig, model: Model, substeps: int | None) -> Assembly:
     head, parameters = rig.head, rig.parameters
     tissue = assemble(head, parameters, literal_springs=model.springs == "literal")
     moving = model.forces == "current"

@@ -58,14 +58,6 @@ def brief(function: F) -> F:
     return kept(**_NUMBERS)(function)
 
 
-def in_parts(function: F) -> F:
-    """Return a kernel as plain Python around the kernels that it calls.
-
-    For what is called once: the parts are compiled anyway, and the whole would take as long again.
-    """
-    return cast(F, getattr(function, "py_func", function))
-
-
 def is_kept(function: Callable[..., object]) -> bool:
     """Return whether compiled code of a kernel lies on disk."""
     cache = getattr(function, "_cache", None)

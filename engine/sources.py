@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from importlib import resources
 from importlib.resources.abc import Traversable
 
@@ -11,39 +12,45 @@ _NO_KERNELS = ("analysis", "gltf", "head", "inverse")
 """Packages from which no kernel outside of `head` takes anything."""
 
 
-def sources_hash(
-    folder: Traversable, *, kinds: tuple[str, ...] = _KINDS, without: tuple[str, ...] = ()
-) -> str:
-    """Return a hash of the code and data under `folder`: every file's place and content.
+Files = Mapping[str, bytes]
+"""Content by place."""
 
-    Args:
-        folder: Where.
-        kinds: Endings of the files that count.
-        without: Folders right in it that do not.
-    """
+
+def files_in(folder: Traversable, place: str = "") -> Files:
+    """Return the code and data under `folder`."""
+    found: dict[str, bytes] = {}
+    for entry in folder.iterdir():
+        if entry.is_dir():
+            found |= files_in(entry, f"{place}{entry.name}/")
+        elif entry.name.endswith(_KINDS):
+            found[f"{place}{entry.name}"] = entry.read_bytes()
+    return found
+
+
+def hash_of(files: Files) -> str:
+    """Return a hash of files: every one's place and content."""
     digest = hashlib.sha256()
-    for place, content in sorted(_files(folder, "", kinds)):
-        if place.partition("/")[0] in without:
-            continue
+    for place, content in sorted(files.items()):
         digest.update(f"{place}\0{len(content)}\0".encode())
         digest.update(content)
     return digest.hexdigest()[:20]
 
 
-def _files(folder: Traversable, place: str, kinds: tuple[str, ...]) -> list[tuple[str, bytes]]:
-    found: list[tuple[str, bytes]] = []
-    for entry in folder.iterdir():
-        if entry.is_dir():
-            found += _files(entry, f"{place}{entry.name}/", kinds)
-        elif entry.name.endswith(kinds):
-            found.append((f"{place}{entry.name}", entry.read_bytes()))
-    return found
+def of_kernels(files: Files) -> Files:
+    """Return the code that a kernel outside of `head` may be made of."""
+    return {
+        place: content
+        for place, content in files.items()
+        if place.endswith(".py") and place.partition("/")[0] not in _NO_KERNELS
+    }
 
 
 # Read with the code itself: what a running process makes is not what a later source would make.
-ENGINE_HASH = sources_hash(resources.files(__package__))
+_FILES = files_in(resources.files(__package__))
+ENGINE_HASH = hash_of(_FILES)
 """Hash of the whole engine."""
-HEAD_HASH = sources_hash(resources.files(__package__) / "head")
+HEAD_HASH = hash_of({place: each for place, each in _FILES.items() if place.startswith("head/")})
 """Hash of what makes heads."""
-KERNELS_HASH = sources_hash(resources.files(__package__), kinds=(".py",), without=_NO_KERNELS)
+KERNELS_HASH = hash_of(of_kernels(_FILES))
 """Hash of all code that a kernel outside of `head` may be made of."""
+del _FILES

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from ..arrays import FloatArray
@@ -14,8 +16,19 @@ def noise(points: FloatArray, size: float, seed: int) -> FloatArray:
     """Return noise of deviation about 0.5 and blobs of `size` mm at points (n, 3), shape (n,)."""
     from scipy.ndimage import map_coordinates  # Here: a start does without.
 
+    places = (points / size).T
+    return np.asarray(
+        map_coordinates(_spline(seed), places, order=3, mode="grid-wrap", prefilter=False)
+    )
+
+
+@lru_cache(maxsize=8)
+def _spline(seed: int) -> FloatArray:
+    """Return the coefficients of a seed's splines, half a megabyte; a few take turns."""
+    from scipy.ndimage import spline_filter
+
     values = np.random.default_rng(seed).normal(size=(LATTICE, LATTICE, LATTICE))
-    return np.asarray(map_coordinates(values, (points / size).T, order=3, mode="grid-wrap"))
+    return np.asarray(spline_filter(values, order=3, mode="grid-wrap"))
 
 
 @kept(nogil=True)

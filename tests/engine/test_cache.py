@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine import assembly, builtin_rig, cache
-from engine.assembly import compile_rig
+from engine.assembly import _compiled
 from engine.cache import cached_arrays
 from engine.kept import keep
 
@@ -69,8 +69,8 @@ def test_a_rig_read_from_disk_steps_as_one_that_was_made(
 ) -> None:
     rig = builtin_rig("standard")
     monkeypatch.setenv("RISORIUS_CACHE_DIR", str(tmp_path))
-    made = compile_rig.__wrapped__(rig, rig.model)
+    made = _compiled.__wrapped__(rig, rig.model, None)
     monkeypatch.setattr(assembly, "rest_basis", lambda *a, **k: pytest.fail("made again"))
-    read = compile_rig.__wrapped__(rig, rig.model)
+    read = _compiled.__wrapped__(rig, rig.model, None)
     assert np.array_equal(made.basis, read.basis)
     assert (made.omega, made.substeps) == (read.omega, read.substeps)

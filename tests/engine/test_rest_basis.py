@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from engine import Rig
-from engine.assembly import compile_rig
+from engine.assembly import _compiled
 from engine.rest_basis import _row
 
 
 def compiled(rig: Rig) -> tuple[Any, int]:
     """Return a rig compiled anew, and how many rows were made for it."""
     made = _row.cache_info().misses
-    assembly = compile_rig.__wrapped__(rig, rig.model)
+    assembly = _compiled.__wrapped__(rig, rig.model, None)
     return assembly, _row.cache_info().misses - made
 
 

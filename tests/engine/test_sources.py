@@ -11,7 +11,7 @@ import pytest
 
 import engine  # noqa: F401 - for its modules
 from engine import compiling, sources
-from engine.sources import sources_hash
+from engine.sources import files_in, hash_of, of_kernels
 
 
 def test_code_and_data_count_and_compiled_files_do_not(tmp_path: Path) -> None:
@@ -19,7 +19,7 @@ def test_code_and_data_count_and_compiled_files_do_not(tmp_path: Path) -> None:
         path = tmp_path / place
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
-        return sources_hash(tmp_path)
+        return hash_of(files_in(tmp_path))
 
     first = write("muscle.py", "reach = 1")
     data = write("data/muscles.json", "[1]")
@@ -31,8 +31,11 @@ def test_code_and_data_count_and_compiled_files_do_not(tmp_path: Path) -> None:
 
 def test_the_engine_s_own_files_are_read_with_it() -> None:
     folder = Path(sources.__file__).parent
-    assert sources.ENGINE_HASH == sources_hash(folder)
-    assert sources.HEAD_HASH == sources_hash(folder / "head")
+    files = files_in(folder)
+    assert hash_of(files) == sources.ENGINE_HASH
+    assert hash_of(files_in(folder / "head", "head/")) == sources.HEAD_HASH
+    assert hash_of(of_kernels(files)) == sources.KERNELS_HASH
+    assert {"dynamics.py", "lanes/advance.py"} <= of_kernels(files).keys() < files.keys()
 
 
 def test_kernels_are_made_of_what_their_hash_covers() -> None:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import FloatArray
-from ...compiling import kept
 from ..recipe import Recipe
 from .fields import Anchors
 
@@ -22,6 +21,7 @@ MEAN_MM = 0.55
 """Mean length of the difference over the face at asymmetry 1."""
 _BOX = np.array([[-70.0, -120.0, 10.0], [70.0, 60.0, 105.0]])
 _STREAM = 0xA5
+_MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 def asymmetry_at(recipe: Recipe, points: FloatArray, anchors: Anchors) -> FloatArray:
@@ -38,27 +38,22 @@ def asymmetry_at(recipe: Recipe, points: FloatArray, anchors: Anchors) -> FloatA
     return np.asarray(size * free * _odd(points, middles, widths, pushes))
 
 
-@kept(nogil=True)
 def _odd(
     points: FloatArray, middles: FloatArray, widths: FloatArray, pushes: FloatArray
 ) -> FloatArray:
     """Return the part of the swells that is opposite on the two sides, shape (k, 3)."""
     total = np.zeros_like(points)
-    for i in range(points.shape[0]):
-        for k in range(len(widths)):
-            here = 0.0
-            image = 0.0
-            for axis in range(3):
-                away = points[i, axis] - middles[k, axis]
-                mirrored = away - 2.0 * points[i, axis] if axis == 0 else away
-                here += away * away
-                image += mirrored * mirrored
-            scale = -0.5 / widths[k] ** 2
-            one, other = 0.5 * np.exp(scale * here), 0.5 * np.exp(scale * image)
-            total[i, 0] += (one + other) * pushes[k, 0]
-            total[i, 1] += (one - other) * pushes[k, 1]
-            total[i, 2] += (one - other) * pushes[k, 2]
+    for middle, width, push in zip(middles, widths, pushes, strict=True):
+        here = _swell(points, middle, width)
+        image = _swell(points * _MIRROR, middle, width)
+        total[:, 0] += 0.5 * (here + image) * push[0]
+        total[:, 1:] += 0.5 * (here - image)[:, None] * push[1:]
     return total
+
+
+def _swell(points: FloatArray, middle: FloatArray, width: float) -> FloatArray:
+    away = points - middle
+    return np.asarray(np.exp(-0.5 / width**2 * np.einsum("ka,ka->k", away, away)))
 
 
 def _free(points: FloatArray, anchors: Anchors) -> FloatArray:
