@@ -6,8 +6,8 @@ Run as a program, with the name of a module, this has that module end with its o
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
-import runpy
 import signal
 import sys
 from contextlib import suppress
@@ -52,10 +52,10 @@ def _end_with_owner() -> None:
 
 
 def main() -> None:
-    """Be the module that is named, with the arguments that come after it."""
+    """Run the `main` of the module that is named, with the arguments that come after it."""
     _end_with_owner()
     del sys.argv[0]
-    runpy.run_module(f"{__package__}.{sys.argv[0]}", run_name="__main__", alter_sys=True)
+    importlib.import_module(f"{__package__}.{sys.argv[0]}").main()
 
 
 if __name__ == "__main__":
