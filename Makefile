@@ -5,14 +5,15 @@ PORT ?= 8000
 PYTHON ?= python3
 BIN := .venv/bin
 STAMPS := .stamps
+PYTHON_SOURCES := $(shell find engine service -path service/viewer -prune -o -name '*.py' -print)
 VIEWER_SOURCES := $(shell find static -path static/node_modules -prune -o -type f -print)
 
 .PHONY: run test check bench levels sheet portraits measure lock clean chromium
 
-run: $(STAMPS)/python $(STAMPS)/viewer
+run: $(STAMPS)/python $(STAMPS)/bytecode $(STAMPS)/viewer
 	$(BIN)/risorius serve --port $(PORT)
 
-test: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
+test: $(STAMPS)/python-dev $(STAMPS)/bytecode $(STAMPS)/viewer chromium
 	npm --prefix static test
 	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
@@ -90,6 +91,12 @@ $(STAMPS)/venv:
 $(STAMPS)/python: requirements.lock pyproject.toml | $(STAMPS)/venv
 	$(BIN)/pip install --quiet --require-hashes -r requirements.lock
 	RISORIUS_SKIP_VIEWER=1 $(BIN)/pip install --quiet --no-deps --no-build-isolation -e .
+	@touch $@
+
+# As installing a wheel does: each process that starts would compile 350 files for half a second,
+# where Python may not write what it compiles.
+$(STAMPS)/bytecode: $(PYTHON_SOURCES) | $(STAMPS)/python
+	$(BIN)/python -m compileall -q engine service
 	@touch $@
 
 $(STAMPS)/python-dev: requirements-dev.lock $(STAMPS)/python

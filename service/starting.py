@@ -32,6 +32,8 @@ FEW, MANY = 10, 40
 """Faces that are awake when memory is read."""
 _LONGEST_SECONDS = 300.0
 _PAUSE = 0.01
+_BYTECODE = "PYTHONDONTWRITEBYTECODE"
+"""Libraries come with their bytecode; the first start writes ours, unless this forbids it."""
 _MEGABYTE = 1024.0
 
 
@@ -122,7 +124,11 @@ def imported(code: str) -> tuple[float, float]:
     script = f"{code}\nprint('done', flush=True)\ninput()"
     began = time.perf_counter()
     with subprocess.Popen(
-        [sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", script],
+        env=_environment(),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
     ) as process:
         assert process.stdout is not None
         if process.stdout.readline() != "done\n":
@@ -210,7 +216,7 @@ def service(environment: dict[str, str] | None = None, *, port: int = 0) -> Iter
         began = time.perf_counter()
         process = subprocess.Popen(
             [sys.executable, "-m", "service", "serve", "--host", "127.0.0.1", "--port", str(port)],
-            env={**os.environ, **own, **(environment or {})},
+            env=_environment() | own | (environment or {}),
             stderr=subprocess.PIPE,
             text=True,
         )
@@ -219,6 +225,10 @@ def service(environment: dict[str, str] | None = None, *, port: int = 0) -> Iter
         finally:
             process.terminate()
             process.communicate()
+
+
+def _environment() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name != _BYTECODE}
 
 
 def _rounded(seconds: dict[str, float]) -> dict[str, float]:
