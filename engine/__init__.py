@@ -115,7 +115,7 @@ from .vocabulary import (
     resolve_label,
     resolve_scores,
 )
-from .warming import kernels_are_kept, warm_kernels, warm_posing, warm_sweep
+from .warming import compile_motion, kernels_are_kept, warm_kernels, warm_surface
 from .writers import Writers
 
 __all__ = [
@@ -206,6 +206,7 @@ __all__ = [
     "clip_file",
     "clip_of",
     "clip_to_glb",
+    "compile_motion",
     "cues_of",
     "end_of_life",
     "examine",
@@ -270,7 +271,6 @@ __all__ = [
     "viseme_shapes",
     "viseme_table",
     "warm_kernels",
-    "warm_posing",
-    "warm_sweep",
+    "warm_surface",
     "whole_of",
 ]

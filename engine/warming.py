@@ -39,24 +39,23 @@ def warm_kernels(rig: Rig | None = None) -> None:
     simulator.step()
 
 
-def warm_sweep() -> None:
-    """Compile or load all kernels of live faces but those of `warm_posing`, the longest first.
+def compile_motion() -> None:
+    """Compile or load the kernels that move tissue, jaw, lids and muscles, the longest first.
 
-    What takes two processes as long as each other: one does this, the other makes a head before it
-    does the rest.
+    On a patch of skin, in a process of its own: it takes as long as another needs to make the
+    first head and do the rest (`warm_surface`).
     """
-    rig = _patch()
-    bank = _bank(rig)
+    bank = _bank(_patch())
     bank.advance()
-    bank.look()
+    bank.pose()
+
+
+def warm_surface(rig: Rig) -> None:
+    """Assemble the tissue of a rig; compile or load all that `compile_motion` does not."""
+    _bank(rig).look()
     mixer = Mixer(rig)
     mixer.apply(Keyframe(action_units={"AU12": 1.0}), 0)
     mixer.at(1)
-
-
-def warm_posing(rig: Rig) -> None:
-    """Compile or load the kernels that pose skull, lids and muscles of a rig."""
-    _bank(rig).pose()
 
 
 def _bank(rig: Rig) -> Bank:

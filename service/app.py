@@ -26,6 +26,7 @@ from .explaining import did_you_mean, explain
 from .guard import Guard, RateLimit
 from .heads import Heads
 from .idempotency import Idempotency
+from .kernels import Compiling
 from .keys import KeyRing
 from .metrics import CountRequests, Metrics
 from .settings import Settings
@@ -42,8 +43,13 @@ _NOT_BUILT = (
 _API_PATHS = ("/api", "/metrics", "/docs", "/openapi.json", "/mcp")
 
 
-def create_app(settings: Settings | None = None) -> FastAPI:
-    """Return an application of its own: nothing is shared with another one."""
+def create_app(settings: Settings | None = None, *, compiling: Compiling | None = None) -> FastAPI:
+    """Return an application of its own: nothing is shared with another one.
+
+    Args:
+        settings: None takes those of the environment.
+        compiling: Kernels that are being compiled already; it waits for them, and ends with them.
+    """
     settings = settings or Settings()
     metrics = Metrics()
     rate = RateLimit(settings.requests_per_second)
@@ -59,6 +65,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         )
         metrics.gauge("viewers", "Sockets open.", lambda: parts.sessions.viewer_count)
         app.state.parts = parts
+        parts.compiling = compiling
         parts.start()
         try:
             yield

@@ -82,6 +82,10 @@ def serve(
     # Nothing that imports make is garbage: looking for it takes a tenth of their time.
     gc.disable()
     try:
+        from .kernels import begin_compiling
+
+        # First: on a new machine it takes longest.
+        compiling = begin_compiling()
         from pydantic import ValidationError
 
         from .explaining import explain
@@ -117,7 +121,7 @@ def serve(
             "from others: make one with `risorius keys add NAME`, or set RISORIUS_API_KEYS."
         )
     try:
-        asyncio.run(serve_until_stopped(settings, _console))
+        asyncio.run(serve_until_stopped(settings, _console, compiling))
     except KeyboardInterrupt:
         _console.print("stopped")
     except OSError as error:

@@ -14,7 +14,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 from starlette.types import Scope
 
-from engine import Timeline, warm_kernels, warm_posing
+from engine import Timeline, warm_kernels, warm_surface
 
 from .access import Access
 from .bodies import ModelChoice
@@ -25,7 +25,7 @@ from .embedded import EmbeddedRunner
 from .expressions import Expressions
 from .guard import RateLimit
 from .insight import Insight
-from .kernels import compile_sweep
+from .kernels import Compiling, begin_compiling, compiled
 from .keys import KeyRing
 from .loop_delay import LoopDelay
 from .metrics import Metrics
@@ -52,6 +52,7 @@ class Components:
     Attributes:
         ready: Set once kernels are compiled and the first rig is built.
         stage: What is being done until then, in words.
+        compiling: What was begun before there was an application.
     """
 
     settings: Settings
@@ -69,6 +70,7 @@ class Components:
     loop_delay: LoopDelay
     ready: asyncio.Event = field(default_factory=asyncio.Event)
     stage: str = "starting"
+    compiling: Compiling | None = None
     _warming: asyncio.Task[None] | None = None
     _garbage: tuple[int, int, int] = field(default_factory=gc.get_threshold)
     _reading_keys: asyncio.Task[None] | None = None
@@ -195,22 +197,20 @@ class Components:
         """Build the first rig and compile every kernel a face needs."""
         try:
             self.stage = "building the standard rig, compiling the simulation"
-            compiling = asyncio.create_task(compile_sweep())
-            surface: asyncio.Task[bytes] | None = None
+            begun = self.compiling or await asyncio.to_thread(begin_compiling)
+            compiling = asyncio.create_task(compiled(begun))
             try:
                 rig = await self.rigs.get("standard")
-                surface = asyncio.create_task(self.rigs.surface(rig))
                 self.stage = "compiling the simulation"
-                await asyncio.to_thread(warm_posing, rig)
+                warming = asyncio.to_thread(warm_surface, rig)
+                await asyncio.gather(self.rigs.surface(rig), warming, compiling)
             finally:
-                await compiling
-                if surface is not None:
-                    await surface
+                compiling.cancel()
             self.stage = "loading the simulation"
             await asyncio.to_thread(warm_kernels, rig)
             await self.runner.open(_WARM_UP, rig, Timeline((), 1.0), live_model(ModelChoice(), rig))
-            await self.runner.view(_WARM_UP)
-            await self.runner.close(_WARM_UP)
+            # Asked for at once, they are answered in one tick.
+            await asyncio.gather(self.runner.view(_WARM_UP), self.runner.close(_WARM_UP))
         except Exception as error:
             self.stage = f"failed: {error}"
             _LOG.exception("the service could not warm up")

@@ -3,42 +3,46 @@
 from __future__ import annotations
 
 import asyncio
-import sys
+import subprocess
 
 from engine import kernels_are_kept
 
-from .apart import environment
+from .apart import bound, environment
 
-_SCRIPT = "import gc; gc.disable(); import engine; engine.warm_sweep()"
+Compiling = subprocess.Popen[bytes]
+_COMMAND = bound("compile_process")
+_PAUSE_SECONDS = 0.02
 
 
-async def compile_sweep() -> None:
-    """Compile the longest kernels, if they were never compiled on this machine.
+def begin_compiling() -> Compiling | None:
+    """Start to compile what moves faces, if that was never compiled on this machine.
 
-    In a process of its own, which keeps them on disk: compiling holds the interpreter, and the
-    first rig would be built after it instead of beside it.
+    In a process of its own, which keeps it on disk and ends with this thread: compiling holds the
+    interpreter, and all that a start imports and builds would come after it instead of beside it.
+    What it fails to do is done where a kernel is first called.
     """
-    if not await asyncio.to_thread(kernels_are_kept):
-        await _compile_apart()
-
-
-async def _compile_apart() -> None:
-    """Compile in a process; what it fails to do is done where a kernel is first called."""
+    if kernels_are_kept():
+        return None
     try:
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-c",
-            _SCRIPT,
+        return subprocess.Popen(
+            _COMMAND,
             env=environment(),
-            stdin=asyncio.subprocess.DEVNULL,
-            stdout=asyncio.subprocess.DEVNULL,
-            stderr=asyncio.subprocess.DEVNULL,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
     except OSError:
+        return None
+
+
+async def compiled(compiling: Compiling | None) -> None:
+    """Wait for what was begun; who does not wait to its end, ends it."""
+    if compiling is None:
         return
     try:
-        await process.wait()
+        while compiling.poll() is None:
+            await asyncio.sleep(_PAUSE_SECONDS)
     finally:
-        if process.returncode is None:
-            process.kill()
-            await process.wait()
+        if compiling.poll() is None:
+            compiling.kill()
+            compiling.wait()

@@ -13,13 +13,21 @@ from rich.console import Console
 
 from .app import create_app
 from .components import Components
+from .kernels import Compiling
 from .priority import take_short_turns
 from .server import listen, server_of, url_of
 from .settings import Settings
 
 
-async def serve_until_stopped(settings: Settings, console: Console) -> None:
+async def serve_until_stopped(
+    settings: Settings, console: Console, compiling: Compiling | None
+) -> None:
     """Serve until a signal comes.
+
+    Args:
+        settings: Of the service.
+        console: Told what a person wants to know.
+        compiling: Kernels that are being compiled already.
 
     Raises:
         OSError: If the address cannot be used.
@@ -29,7 +37,7 @@ async def serve_until_stopped(settings: Settings, console: Console) -> None:
     gc.disable()
     gc.freeze()
     listener = listen(settings.host, settings.port)
-    app = create_app(settings)
+    app = create_app(settings, compiling=compiling)
     server = server_of(app, settings)
     console.print(f"Risorius at {url_of(listener)}", soft_wrap=True)
     announcing = asyncio.create_task(_announce(app, server, console))

@@ -3,61 +3,97 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from conftest import settings_in, until
+from starlette.testclient import TestClient
 
-import engine
-from service import kernels
-from service.kernels import compile_sweep
+from service import components, kernels
+from service.app import create_app
+from service.kernels import begin_compiling, compiled
+
+Scripted = Callable[[str], None]
 
 
 @pytest.fixture
-def never_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+def scripted(monkeypatch: pytest.MonkeyPatch) -> Scripted:
+    """Have another script in place of the compiler, on a machine that never compiled."""
+
+    def put(script: str) -> None:
+        monkeypatch.setattr(kernels, "_COMMAND", (sys.executable, "-c", script))
+
     monkeypatch.setattr(kernels, "kernels_are_kept", lambda: False)
+    return put
 
 
-def test_a_process_compiles_what_is_not_kept(
-    never_compiled: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def writing(mark: Path) -> str:
+    """Return a script that shows that it runs, for ever."""
+    return f"import time\nwhile True: open({str(mark)!r}, 'w').write('.'); time.sleep(0.02)"
+
+
+def silent(mark: Path) -> bool:
+    """Return whether nobody writes any more."""
+    mark.unlink()
+    time.sleep(0.2)
+    return not mark.exists()
+
+
+def test_the_process_compiles_what_moves_faces() -> None:
+    # On the machine of a test they are kept: it ends well and soon.
+    assert kernels._COMMAND[-1] == "compile_process"
+    done = kernels.subprocess.run(kernels._COMMAND, env=kernels.environment(), timeout=120)
+    assert done.returncode == 0
+
+
+def test_it_is_waited_for(scripted: Scripted, tmp_path: Path) -> None:
     done = tmp_path / "done"
-    script = f"import engine; open({str(done)!r}, 'w').write(engine.__file__)"
-    monkeypatch.setattr(kernels, "_SCRIPT", script)
-    asyncio.run(compile_sweep())
-    assert done.read_text() == engine.__file__
+    scripted(f"import time; time.sleep(0.3); open({str(done)!r}, 'w')")
+    asyncio.run(compiled(begin_compiling()))
+    assert done.exists()
 
 
-def test_what_is_kept_takes_no_process(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    done = tmp_path / "done"
-    monkeypatch.setattr(kernels, "_SCRIPT", f"open({str(done)!r}, 'w')")
+def test_what_is_kept_takes_no_process(scripted: Scripted, monkeypatch: pytest.MonkeyPatch) -> None:
+    scripted("")
     monkeypatch.setattr(kernels, "kernels_are_kept", lambda: True)
-    asyncio.run(compile_sweep())
-    assert not done.exists()
+    assert begin_compiling() is None
 
 
 def test_where_no_process_can_be_had_a_start_goes_on(
-    never_compiled: None, monkeypatch: pytest.MonkeyPatch
+    scripted: Scripted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(kernels.sys, "executable", "/nowhere/python")
-    asyncio.run(compile_sweep())
+    monkeypatch.setattr(kernels, "_COMMAND", ("/nowhere/python",))
+    compiling = begin_compiling()
+    assert compiling is None
+    asyncio.run(compiled(compiling))
 
 
-def test_a_service_that_stops_takes_the_process_along(
-    never_compiled: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_a_service_that_stops_takes_along_what_was_begun_before_it(
+    scripted: Scripted, tmp_path: Path
 ) -> None:
     mark = tmp_path / "alive"
-    loop = f"import time\nwhile True: open({str(mark)!r}, 'w').write('.'); time.sleep(0.02)"
-    monkeypatch.setattr(kernels, "_SCRIPT", loop)
+    scripted(writing(mark))
+    compiling = begin_compiling()
+    app = create_app(settings_in(tmp_path), compiling=compiling)
+    with TestClient(app, base_url="http://localhost"):
+        until(mark.exists)
+    assert compiling is not None
+    assert compiling.poll() is not None
+    assert silent(mark)
 
-    async def stopped() -> None:
-        task = asyncio.create_task(compile_sweep())
-        while not mark.exists():
-            await asyncio.sleep(0.02)
-        task.cancel()
-        await asyncio.gather(task, return_exceptions=True)
 
-    asyncio.run(stopped())
-    mark.unlink()
-    time.sleep(0.2)
-    assert not mark.exists()
+def test_a_service_that_cannot_warm_up_does_not_wait_for_it(
+    scripted: Scripted, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fail(_rig: object) -> None:
+        raise OSError("no room")
+
+    mark = tmp_path / "alive"
+    scripted(writing(mark))
+    monkeypatch.setattr(components, "warm_surface", fail)
+    with TestClient(create_app(settings_in(tmp_path)), base_url="http://localhost") as client:
+        until(lambda: "no room" in client.get("/api/ready").text, seconds=120)
+        assert not mark.exists() or silent(mark)
