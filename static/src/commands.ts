@@ -10,6 +10,9 @@ import {
   replaceCommand,
 } from './protocol';
 import { callOf } from './retold';
+import { settledSides } from './sides';
+import type { Snapshot } from './snapshot';
+import { heldOf, snapshotOf } from './snapshot';
 import type { Group } from './state/actions';
 import type { Feeling } from './feelings';
 import { dominanceAt } from './feelings';
@@ -27,14 +30,6 @@ const FEELING_FADE_SECONDS = 0.15;
 const FACS_FADE_SECONDS = 0.3;
 /** After a control was moved here, what the service reports of it is older than the hand for this long. */
 export const HANDS_OFF_MS = 700;
-
-/** All that undoing brings back. */
-interface Snapshot {
-  controls: Record<Group, Numbers>;
-  emotion: string;
-  intensity: number;
-  feeling: Feeling | null;
-}
 
 export class Commands {
   private readonly throttle: Throttle;
@@ -134,11 +129,7 @@ export class Commands {
 
   /** What the controls hold, and what plays as an emotion. */
   held(): Played {
-    const { controls, emotion, intensity, feeling } = this.snapshot();
-    if (emotion !== '') return { controls, plays: { label: emotion, intensity } };
-    if (feeling === null) return { controls, plays: null };
-    const dominance = dominanceAt(feeling, this.viewer.places);
-    return { controls, plays: { ...feeling, dominance } };
+    return heldOf(this.viewer);
   }
 
   /** Go through a performance: nothing that is done here is undone later, and nothing is told. */
@@ -160,27 +151,26 @@ export class Commands {
   performCue(plays: Cue['plays']): void {
     this.touch();
     this.felt.clear();
-    const { viewer } = this;
-    viewer.emotion = '';
-    viewer.feeling = null;
+    this.viewer.emotion = '';
+    this.viewer.feeling = null;
     if (plays === null) {
       this.put(replaceCommand({ layer: 'emotion', fade: RELEASE_FADE_SECONDS }));
     } else if ('label' in plays) {
-      viewer.emotion = plays.label;
-      viewer.emotionIntensity = plays.intensity;
+      this.viewer.emotion = plays.label;
+      this.viewer.emotionIntensity = plays.intensity;
       this.put(emotionCommand(plays.label, plays.intensity, OWN_TIME));
     } else {
-      viewer.feeling = { valence: plays.valence, arousal: plays.arousal };
+      this.viewer.feeling = { valence: plays.valence, arousal: plays.arousal };
       this.put(feelingCommand(plays, FEELING_FADE_SECONDS));
     }
   }
 
   undo(): void {
-    this.goTo(this.history.undo(this.snapshot()));
+    this.goTo(this.history.undo(snapshotOf(this.viewer)));
   }
 
   redo(): void {
-    this.goTo(this.history.redo(this.snapshot()));
+    this.goTo(this.history.redo(snapshotOf(this.viewer)));
   }
 
   /** Have the face blink, look about and sway by itself, or leave it still. */
@@ -208,7 +198,7 @@ export class Commands {
 
   /** What is held now, to be asked of another face: call it once that face has said hello. */
   carried(): () => void {
-    const held = this.snapshot();
+    const held = snapshotOf(this.viewer);
     return () => {
       this.restore(held);
     };
@@ -221,19 +211,13 @@ export class Commands {
   }
 
   private note(gesture: string): void {
-    this.history.note(gesture, () => this.snapshot());
+    this.history.note(gesture, () => snapshotOf(this.viewer));
     this.tellHistory();
   }
 
   private tellHistory(): void {
     this.viewer.canUndo = this.history.canUndo;
     this.viewer.canRedo = this.history.canRedo;
-  }
-
-  private snapshot(): Snapshot {
-    const { sliders, emotion, emotionIntensity, feeling } = this.viewer;
-    const controls = JSON.parse(JSON.stringify(sliders.all())) as Snapshot['controls'];
-    return { controls, emotion, intensity: emotionIntensity, feeling };
   }
 
   private goTo(snapshot: Snapshot | null): void {
@@ -308,17 +292,9 @@ export class Commands {
     this.throttle.set(group, name, 0);
   }
 
-  /** Hold a unit as a whole or by its sides, never both: AU12 beside L12 would say two things of the left. */
   private settleSides(name: string): void {
-    const values = this.viewer.sliders.action_units;
-    const number = name.replace(/^(AU|L|R)/, '');
-    const [whole, left, right] = [`AU${number}`, `L${number}`, `R${number}`];
-    if (name === whole) {
-      for (const side of [left, right]) if (side in values) this.drop('action_units', side);
-    } else if (whole in values) {
-      const held = values[whole]!;
-      this.drop('action_units', whole);
-      for (const side of [left, right]) this.hold('action_units', side, held);
-    }
+    const { dropped, held } = settledSides(this.viewer.sliders.action_units, name);
+    for (const side of dropped) this.drop('action_units', side);
+    for (const [side, value] of held) this.hold('action_units', side, value);
   }
 }
