@@ -36,8 +36,12 @@ COVER_FADE = (-3.0, 8.0)
 """The same for the scalp's shade, which lies deeper in, so that no edge of paint shows."""
 NAPE_TAPER = 0.5
 """How much farther in than elsewhere hair is full there."""
-EDGE_NOISE = ((14.0, 6, 2.1), (5.0, 5, 1.5), (2.2, 7, 1.0))
+Unevenness = tuple[tuple[float, int, float], ...]
+EDGE_NOISE: Unevenness = ((14.0, 6, 2.1), (5.0, 5, 1.5), (2.2, 7, 1.0))
 """Unevenness of the outline: size of its blobs [mm], seed, depth [mm]."""
+COVER_NOISE: Unevenness = ((14.0, 6, 1.0),)
+"""The same for the scalp's shade: it is known at vertices, up to nine millimetres apart, between
+which what is finer or deeper comes out as steps and spikes."""
 
 AT_ONCE = 1024
 """Points that are held against every side of the outline at once: what a cache has room for."""
@@ -57,7 +61,9 @@ HIDDEN_SCALP = 0.94
 
 def hair_mask(points: FloatArray, recipe: Recipe = STANDARD) -> FloatArray:
     """Return how densely hair grows at points (n, 3) of reference space, 0..1, shape (n,)."""
-    return np.asarray(smoothstep(*FADE, _distance(points, recipe)) * _thinning(points, recipe))
+    return np.asarray(
+        smoothstep(*FADE, _distance(points, recipe, EDGE_NOISE)) * _thinning(points, recipe)
+    )
 
 
 def scalp_cover(points: FloatArray, recipe: Recipe = STANDARD) -> FloatArray:
@@ -65,7 +71,8 @@ def scalp_cover(points: FloatArray, recipe: Recipe = STANDARD) -> FloatArray:
 
     The scalp is to be painted so far towards `engine.head.hair_color.scalp_color`.
     """
-    grown = smoothstep(*COVER_FADE, _distance(points, recipe)) * _thinning(points, recipe)
+    inside = _distance(points, recipe, COVER_NOISE)
+    grown = smoothstep(*COVER_FADE, inside) * _thinning(points, recipe)
     # The nape and the sideburns are cut shortest, and skin shows through.
     shorn = 1 - 0.35 * smoothstep(-10, -70, points[:, 1])
     cover = STYLE_COVER.get(recipe.hair_style, HIDDEN_SCALP)
@@ -84,12 +91,12 @@ def outline(recipe: Recipe) -> FloatArray:
     return np.asarray(grown + recession(recipe) * (RECEDED_OUTLINE - grown))
 
 
-def _distance(points: FloatArray, recipe: Recipe) -> FloatArray:
+def _distance(points: FloatArray, recipe: Recipe, uneven: Unevenness) -> FloatArray:
     """Return how far inside the uneven hairline points (n, 3) lie [mm], shape (n,)."""
     distance = distance_inside(points[:, [2, 1]], outline(recipe))
     # At the nape hair tapers off over a longer way.
     distance *= 1 - NAPE_TAPER * smoothstep(-15, -55, points[:, 1])
-    for size, seed, depth in EDGE_NOISE:
+    for size, seed, depth in uneven:
         distance += depth * noise(points, size, seed + recipe.seed)
     return distance
 

@@ -217,3 +217,13 @@ def test_a_bob_is_cut_at_one_height(parts: dict[str, list[Part]]) -> None:
     low = bob.vertices[tips].reshape(-1, 2, 3).mean(axis=1)[:, 1]
     assert low.min() > HEM - 6 - 5 * HEM_RAGGED
     assert (low < HEM + 3 * HEM_RAGGED).mean() > 0.3
+
+
+def test_the_scalps_shade_has_no_steps_between_neighbouring_vertices() -> None:
+    """Columns of the forehead stand five millimetres apart; between them the shade is linear."""
+    row = np.array([[x, 80.0, 80.0] for x in np.arange(-45.0, 46.0, 5.0)])
+    steps = [
+        np.abs(np.diff(scalp_cover(row, Recipe(hair_style="buzz", seed=seed)))).max()
+        for seed in range(100, 104)
+    ]
+    assert max(steps) < 0.25
