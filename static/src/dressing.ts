@@ -5,6 +5,7 @@ import { Float32BufferAttribute, MathUtils, Vector3 } from 'three';
 import type { EyeSetting } from './eye-shader';
 import { addFringe, FRINGE } from './fringe';
 import { meshes, nodeName, plainArray } from './gltf-nodes';
+import type { Setting } from './materials';
 import { createMaterial } from './materials';
 import { strandSides } from './strand-sides';
 import { strandTangents } from './strand-tangents';
@@ -28,7 +29,7 @@ export function dress(
   root: Object3D,
   maps: FaceMaps,
   eyes: Readonly<Record<string, EyeSetting>>,
-  neckFade: readonly [number, number] | null,
+  { neckFade, peelCut }: Pick<Setting, 'neckFade' | 'peelCut'>,
 ): void {
   root.updateMatrixWorld(true);
   for (const mesh of meshes(root)) {
@@ -42,6 +43,7 @@ export function dress(
       map,
       inMouth,
       neckFade,
+      peelCut,
       maps: mesh.geometry.hasAttribute('uv') ? maps : null,
       eye: eyeOf(mesh, eyes),
     };

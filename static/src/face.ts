@@ -1,12 +1,15 @@
 // The face as three.js draws it: surface.glb in, poses of the tissue surface applied.
 
-import type { BufferAttribute, Group, Material, Mesh, Object3D, Plane } from 'three';
+import type { BufferAttribute, Group, Material, Mesh, Object3D } from 'three';
 import { Float32BufferAttribute } from 'three';
 import { dress, neckFadeOf } from './dressing';
 import { FaceEyes } from './face-eyes';
 import { FaceNodes } from './face-nodes';
+import { FRINGE } from './fringe';
 import { dynamic, meshes, plainArray } from './gltf-nodes';
 import { MovingNormals } from './normals';
+import type { Peelable } from './peel';
+import { NOTHING_PEELED } from './peel';
 import type { FacePose, Triple } from './pose';
 import type { JawPose } from './riding';
 import { mouthWalls, skinForm } from './skin-form';
@@ -34,13 +37,16 @@ export class Face {
   readonly skin: Mesh;
   /** Heights between which the neck fades into the ground [mm]; null for a mask without a neck. */
   readonly neckFade: readonly [number, number] | null;
+  /** Skin of it further to the left than this is left out, as far as there is tissue under it [m]; see peel.ts. */
+  readonly peelCut = { value: NOTHING_PEELED };
   private readonly surface: DrawnSurface;
   private readonly normals: MovingNormals;
   private readonly skinPosition: BufferAttribute;
   private readonly skinNormal: BufferAttribute;
   private readonly tissueRest: Float32Array;
   private readonly tissueTriangles: ArrayLike<number>;
-  private clipped: Plane[] = [];
+  private readonly roots: SurfaceFile['roots'];
+  private readonly seams: SurfaceFile['seams'];
   private readonly strands: RidingStrands[] = [];
   private readonly nodes: FaceNodes;
   private readonly grid: number;
@@ -62,6 +68,7 @@ export class Face {
     const { scene, grid, skin, extras, surface, roots, maps, regions, seams, gauges } = file;
     this.mapAddresses = maps;
     this.root = scene;
+    [this.roots, this.seams] = [roots, seams];
     this.surface = surface;
     this.grid = grid;
     this.landmarks = extras.landmarks ?? {};
@@ -100,7 +107,7 @@ export class Face {
     const centers = (extras.eyes ?? []).map(({ center }) => center);
     this.eyes = new FaceEyes(centers, this.maps.uniforms.eye);
     this.neckFade = neckFadeOf(this.root);
-    dress(this.root, this.maps, this.eyes.settings, this.neckFade);
+    dress(this.root, this.maps, this.eyes.settings, this);
     const form = skinForm(
       {
         positions: surface.rest,
@@ -217,22 +224,22 @@ export class Face {
   paint(material: Material | Material[]): Material | Material[] {
     const own = this.skin.material;
     this.skin.material = material;
-    this.clip(this.clipped[0] ?? null);
     return own;
   }
 
-  /** Leave out what of skin and hair lies behind a plane of the world; null leaves out nothing. */
-  clip(plane: Plane | null): void {
-    this.clipped = plane === null ? [] : [plane];
-    for (const mesh of meshes(this.root)) {
-      const { role, material: kind } = mesh.userData as { role?: string; material?: string };
-      if (mesh !== this.skin && role !== 'strands' && kind !== 'hair') continue;
-      for (const material of [mesh.material].flat()) {
-        if ((material.clippingPlanes?.length ?? 0) !== this.clipped.length)
-          material.needsUpdate = true;
-        material.clippingPlanes = this.clipped;
-      }
-    }
+  /** What can be peeled off it. */
+  get peelable(): Peelable {
+    const origin = [0, 1, 2].map((axis) => this.nodes.origin('skin', axis));
+    const hair = meshes(this.root).filter(
+      ({ userData: { material, role } }) =>
+        material !== FRINGE && (material === 'hair' || role === 'strands'),
+    );
+    return {
+      skin: this.skin.geometry,
+      positions: this.surface.rest.map((value, at) => origin[at % 3]! + value),
+      seams: this.seams,
+      hair: hair.map((mesh) => ({ geometry: mesh.geometry, roots: this.roots.get(mesh) ?? null })),
+    };
   }
 
   /** How far a streamed point is from rest [m]. */

@@ -30,6 +30,8 @@ export interface Setting {
   map: Texture | null;
   /** The neck dissolves into the background between these heights [mm]; null where there is no cut to hide. */
   neckFade: readonly [number, number] | null;
+  /** What of the skin lies further to the left is peeled off [m]. */
+  peelCut: { value: number };
   /** The face's maps; null for a surface without texture coordinates. */
   maps: FaceMaps | null;
   /** Of an eyeball or cornea, the eye it belongs to. */
@@ -41,7 +43,7 @@ const NO_FADE = [-2000, -1999] as const;
 
 export function createMaterial(
   kind: string,
-  { vertexColors, inMouth, map, neckFade, maps, eye }: Setting,
+  { vertexColors, inMouth, map, neckFade, peelCut, maps, eye }: Setting,
 ): Material {
   switch (kind) {
     case 'eye':
@@ -83,7 +85,7 @@ export function createMaterial(
       if (map === null) throw new Error('A fringe is cut out of a picture of hair.');
       return cards(vertexColors, map, true);
     default:
-      return skin(vertexColors, neckFade, maps);
+      return skin(vertexColors, { neckFade, peelCut, maps });
   }
 }
 
@@ -94,7 +96,10 @@ function wet(make: (program: Program) => void, look: MeshPhysicalMaterialParamet
   return material;
 }
 
-function skin(vertexColors: boolean, fade: Setting['neckFade'], maps: FaceMaps | null): Material {
+function skin(
+  vertexColors: boolean,
+  { neckFade: fade, peelCut, maps }: Pick<Setting, 'neckFade' | 'peelCut' | 'maps'>,
+): Material {
   const material = new MeshPhysicalMaterial({
     vertexColors,
     color: vertexColors ? 0xffffff : 0xd9a58a,
@@ -110,6 +115,7 @@ function skin(vertexColors: boolean, fade: Setting['neckFade'], maps: FaceMaps |
   material.onBeforeCompile = (program) => {
     makeSkin(program, {
       neckFade,
+      peelCut,
       mapsShown: shown,
       albedoMap: uniforms.albedo,
       reliefMap: uniforms.normal,

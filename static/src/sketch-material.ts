@@ -2,6 +2,7 @@
 
 import type { Color, Texture } from 'three';
 import { DoubleSide, ShaderMaterial, UniformsLib, UniformsUtils } from 'three';
+import { PEEL_FRAGMENT, PEEL_VERTEX } from './peel';
 
 /** Less of a card's picture than this is no hair. */
 const CUT = '0.35';
@@ -12,21 +13,22 @@ export interface SketchLook {
   color: Color;
   /** Picture of hair that cards are cut out of. */
   map: Texture | null;
+  /** What of the skin lies further to the left is peeled off [m]. */
+  peelCut: { value: number };
 }
 
 /** Lambert's law as three has it, without all that a sketch does not need: its own program is ten times as long. */
-export function sketchMaterial({ vertexColors, color, map }: SketchLook): ShaderMaterial {
+export function sketchMaterial({ vertexColors, color, map, peelCut }: SketchLook): ShaderMaterial {
   const material = new ShaderMaterial({
     // All surfaces alike, so that two programs draw all of a face.
     side: DoubleSide,
     lights: true,
-    clipping: true,
     vertexColors,
     defines: map === null ? {} : { CARDS: '' },
     uniforms: UniformsUtils.merge([UniformsLib.lights, { gain: { value: color } }]),
     vertexShader: /* glsl */ `
       #include <color_pars_vertex>
-      #include <clipping_planes_pars_vertex>
+      ${PEEL_VERTEX}
       varying vec3 vFacing;
       varying vec2 vPicture;
       void main() {
@@ -35,11 +37,11 @@ export function sketchMaterial({ vertexColors, color, map }: SketchLook): Shader
         vPicture = uv;
         vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
         gl_Position = projectionMatrix * mvPosition;
-        #include <clipping_planes_vertex>
+        vPeeling = peeling;
       }`,
     fragmentShader: /* glsl */ `
       #include <color_pars_fragment>
-      #include <clipping_planes_pars_fragment>
+      ${PEEL_FRAGMENT}
       struct DirectionalLight { vec3 direction; vec3 color; };
       struct HemisphereLight { vec3 direction; vec3 skyColor; vec3 groundColor; };
       uniform DirectionalLight directionalLights[NUM_DIR_LIGHTS];
@@ -49,7 +51,8 @@ export function sketchMaterial({ vertexColors, color, map }: SketchLook): Shader
       varying vec3 vFacing;
       varying vec2 vPicture;
       void main() {
-        #include <clipping_planes_fragment>
+        // What is no skin has no place in what is peeled: noughts.
+        if (leftOfPeel() < 0.5) discard;
         vec4 diffuseColor = vec4(gain, 1.0);
         #ifdef CARDS
           diffuseColor *= texture2D(picture, vPicture);
@@ -70,5 +73,6 @@ export function sketchMaterial({ vertexColors, color, map }: SketchLook): Shader
   });
   // Not merged with the others: that would copy the picture, and upload it twice.
   material.uniforms.picture = { value: map };
+  material.uniforms.peelCut = peelCut;
   return material;
 }

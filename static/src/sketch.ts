@@ -3,6 +3,7 @@
 import type { Material, MeshStandardMaterial, Object3D, ShaderMaterial, Texture } from 'three';
 import { BufferGeometry, Color, DataTexture, Float32BufferAttribute, Group, Mesh } from 'three';
 import { FRINGE } from './fringe';
+import { NOTHING_PEELED } from './peel';
 import { sketchMaterial } from './sketch-material';
 
 /** Where a surface brings no colours: flesh, and hair. */
@@ -16,9 +17,10 @@ const LEFT_OUT = ['cornea', 'wet', FRINGE];
 
 /**
  * Put plain materials on all that is seen of a face.
+ * @param peelCut what of the skin lies further to the left is peeled off [m].
  * @returns what gives it its own back.
  */
-export function sketch(root: Object3D): () => void {
+export function sketch(root: Object3D, peelCut = { value: NOTHING_PEELED }): () => void {
   const own: [Mesh, Material | Material[], boolean][] = [];
   const plain = new Map<string, ShaderMaterial>();
   root.traverse((node) => {
@@ -29,7 +31,7 @@ export function sketch(root: Object3D): () => void {
     const { map } = node.material as MeshStandardMaterial;
     const coloured = (node as Mesh).geometry.hasAttribute('color');
     const key = `${kind === 'hair'} ${coloured} ${map?.uuid ?? ''}`;
-    const material = plain.get(key) ?? drawnPlainly(kind === 'hair', coloured, map);
+    const material = plain.get(key) ?? drawnPlainly(kind === 'hair', coloured, map, peelCut);
     plain.set(key, material);
     node.material = material;
   });
@@ -75,11 +77,17 @@ export function sketchSample(): { root: Group; dispose: () => void } {
   };
 }
 
-function drawnPlainly(hair: boolean, coloured: boolean, map: Texture | null): ShaderMaterial {
+function drawnPlainly(
+  hair: boolean,
+  coloured: boolean,
+  map: Texture | null,
+  peelCut = { value: NOTHING_PEELED },
+): ShaderMaterial {
   const bare = new Color(hair ? HAIR : FLESH);
   return sketchMaterial({
     vertexColors: coloured,
     color: (coloured ? new Color(0xffffff) : bare).multiplyScalar(hair ? HAIR_GAIN : SKIN_GAIN),
     map: hair ? map : null,
+    peelCut,
   });
 }

@@ -1,5 +1,6 @@
 // What the skin adds to three's physical shader: its maps, wrinkles and pores, and light that bleeds under it.
 
+import { PEEL_FRAGMENT, PEEL_VERTEX } from './peel';
 import type { Program } from './shader-edit';
 import { replaced } from './shader-edit';
 import { SKIN_LIGHT, SKIN_OPENNESS, scatteringShadows, scatteringSurroundings } from './skin-light';
@@ -9,6 +10,8 @@ import { softerShadows } from './soft-shadows';
 export interface SkinUniforms {
   /** Heights between which the neck leaves the light, for the background [mm]. */
   neckFade: { value: unknown };
+  /** What lies further to the left of a face that is peeled is left out [m]. */
+  peelCut: { value: unknown };
   /** 0 vertex colours, 1 maps. */
   mapsShown: { value: unknown };
   albedoMap: { value: unknown };
@@ -182,14 +185,16 @@ if (mouthWall > 0.0) {
 
 /** Where skin is peeled from a face its mouth keeps its walls, or one would see through the head. */
 const PEELED = /* glsl */ `
+#include <clipping_planes_fragment>
 if (vWall < 0.9) {
-  #include <clipping_planes_fragment>
+  diffuseColor.a *= leftOfPeel();
+  if (diffuseColor.a <= 0.0) discard;
 }
 `;
 
 /**
  * Change the program of a physical material into skin. Needs attributes `restPosition` [m], `_hair`, `mouthWall`, `skinForm`
- * of skin-form.ts, and with the define SKIN_MAPS `uv` and `wrinkle`.
+ * of skin-form.ts, where it is peeled `peeling` of peel.ts, and with the define SKIN_MAPS `uv` and `wrinkle`.
  * @throws Error when three's shader no longer has a line that is replaced here.
  */
 export function makeSkin(program: Program, uniforms: SkinUniforms): void {
@@ -201,7 +206,7 @@ export function makeSkin(program: Program, uniforms: SkinUniforms): void {
 attribute vec3 restPosition;
 attribute float _hair;
 attribute vec2 skinForm;
-attribute float mouthWall;
+attribute float mouthWall;${PEEL_VERTEX}
 varying vec3 vRest;
 varying float vHair;
 varying vec2 vForm;
@@ -219,6 +224,7 @@ vRest = restPosition * 1000.0;
 vHair = _hair;
 vForm = skinForm;
 vWall = mouthWall;
+vPeeling = peeling;
 #ifdef SKIN_MAPS
 vSkinUv = uv;
 vWrinkle = wrinkle;
@@ -227,7 +233,10 @@ vWrinkle = wrinkle;
     ['#include <project_vertex>', `#include <project_vertex>\n${BEHIND_TEETH}`],
   ]);
   program.fragmentShader = replaced(program.fragmentShader, [
-    ['#include <common>', `${TILES}${FOLDS}#include <common>\nvarying float vWall;\n${NOISE}`],
+    [
+      '#include <common>',
+      `${TILES}${FOLDS}#include <common>\nvarying float vWall;\n${PEEL_FRAGMENT}\n${NOISE}`,
+    ],
     ['#include <clipping_planes_fragment>', PEELED],
     ['#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>\n${PAINTED}`],
     ['#include <normal_fragment_maps>', `#include <normal_fragment_maps>\n${RELIEF}`],

@@ -9,6 +9,7 @@ import { BufferGeometry, DataTexture, Group, Mesh, ShaderLib, Texture } from 'th
 import { describe, expect, it } from 'vitest';
 import { addFringe, FRINGE } from '../src/fringe';
 import { createMaterial } from '../src/materials';
+import { NOTHING_PEELED } from '../src/peel';
 import { sketch } from '../src/sketch';
 
 const setting = {
@@ -16,6 +17,7 @@ const setting = {
   inMouth: false,
   map: new Texture(),
   neckFade: null,
+  peelCut: { value: NOTHING_PEELED },
   maps: null,
   eye: null,
 };

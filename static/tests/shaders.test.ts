@@ -20,6 +20,7 @@ describe('the skin s program', () => {
     const value = { value: null };
     makeSkin(program, {
       neckFade: value,
+      peelCut: value,
       mapsShown: value,
       albedoMap: value,
       reliefMap: value,
@@ -33,7 +34,7 @@ describe('the skin s program', () => {
     expect(program.uniforms).toHaveProperty('poreMap');
     // Of skin that is peeled the walls of the mouth stay.
     expect(program.fragmentShader).toMatch(
-      /if \(vWall < 0\.9\) \{\s*#include <clipping_planes_fragment>/,
+      /if \(vWall < 0\.9\) \{\s*diffuseColor\.a \*= leftOfPeel\(\);/,
     );
   });
 
@@ -41,7 +42,13 @@ describe('the skin s program', () => {
     const program = physical();
     const value = { value: null };
     const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
-    makeSkin(program, { neckFade: value, mapsShown: value, poreMap: value, ...maps });
+    makeSkin(program, {
+      neckFade: value,
+      peelCut: value,
+      mapsShown: value,
+      poreMap: value,
+      ...maps,
+    });
     expect(program.fragmentShader).toContain('float depth = vWrinkle * (1.0 - furrows.z)');
     expect(program.fragmentShader).toContain('vec3(dot(skinFolded, light)), BLUR');
     const [red, green, blue] = /FURROW vec3\((.*?), (.*?), (.*?)\)/
@@ -55,7 +62,13 @@ describe('the skin s program', () => {
     const program = physical();
     const value = { value: null };
     const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
-    makeSkin(program, { neckFade: value, mapsShown: value, poreMap: value, ...maps });
+    makeSkin(program, {
+      neckFade: value,
+      peelCut: value,
+      mapsShown: value,
+      poreMap: value,
+      ...maps,
+    });
     expect(program.fragmentShader).toMatch(/float edge = .*smoothstep\(0\.78, 0\.92, skinOpen\)/);
   });
 
@@ -63,7 +76,13 @@ describe('the skin s program', () => {
     const program = physical();
     const value = { value: null };
     const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
-    makeSkin(program, { neckFade: value, mapsShown: value, poreMap: value, ...maps });
+    makeSkin(program, {
+      neckFade: value,
+      peelCut: value,
+      mapsShown: value,
+      poreMap: value,
+      ...maps,
+    });
     expect(program.vertexShader).toContain('gl_Position.z = behind.z');
   });
 });

@@ -76,11 +76,49 @@ def test_gums_do_not_come_through_the_hypodermis(opened: playwright_api.Page) ->
     with Image.open(io.BytesIO(page.locator("#face").screenshot())) as taken:
         picture = np.asarray(taken.convert("RGB"), dtype=float)
     high, wide, _ = picture.shape
-    mouth = picture[int(0.55 * high) : int(0.9 * high), int(0.35 * wide) : int(0.65 * wide)]
+    # Below the chin lies the skin of the neck.
+    mouth = picture[int(0.55 * high) : int(0.72 * high), int(0.4 * wide) : int(0.6 * wide)]
     red, green, blue = np.moveaxis(mouth, 2, 0)
     flesh = float(((red > green + 25) & (red > blue + 10)).mean())
     peel.get_by_role("button", name="Skin").click()
     assert flesh < 0.0005, flesh
+
+
+def over_the_face(page: playwright_api.Page) -> NDArray[Any]:
+    """Return what is drawn of forehead, nose and cheek, three-quarter, (h, w, 3), 0 to 255."""
+    page.evaluate("() => window.__viewer.render()")
+    with Image.open(io.BytesIO(page.locator("#face").screenshot())) as taken:
+        wide, high = taken.size
+        box = (int(0.34 * wide), int(0.3 * high), int(0.6 * wide), int(0.58 * high))
+        return np.asarray(taken.convert("RGB").crop(box), dtype=float)
+
+
+def test_nothing_behind_the_head_is_seen_through_it_where_it_is_peeled(
+    opened: playwright_api.Page, url: str
+) -> None:
+    page = opened
+    controls = f"{url}/api/sessions/{page.evaluate('() => window.__viewer.session')}/controls"
+    tick = page.evaluate("() => window.__viewer.tick")
+    assert page.request.put(controls, data={"jaw": {"pitch": 28}}).ok
+    settle(page, tick)
+    page.get_by_role("tab", name="Inside").click()
+    peel = page.get_by_role("group", name="Peel to")
+    with page.expect_response(re.compile("/layers$")):
+        peel.get_by_role("button", name="Bone", exact=True).click()
+    page.get_by_role("slider", name="Cut").fill("0")
+    page.evaluate("() => window.__viewer.setView(35)")
+    page.wait_for_timeout(1500)
+    page.evaluate("() => window.__viewer.setGround('dark')")
+    dark = over_the_face(page)
+    page.evaluate("() => window.__viewer.setGround('light')")
+    light = over_the_face(page)
+    page.evaluate("() => window.__viewer.setView('front')")
+    peel.get_by_role("button", name="Skin").click()
+    tick = page.evaluate("() => window.__viewer.tick")
+    assert page.request.put(controls, data={}).ok
+    settle(page, tick)
+    seen = float((np.abs(light - dark).max(axis=2) > NOTICEABLE).mean())
+    assert seen == 0.0, seen
 
 
 def test_muscles_are_seen_and_glow_as_they_contract(opened: playwright_api.Page) -> None:

@@ -153,7 +153,7 @@ export class BesideOverlay implements Overlay {
       this.other?.dispose();
       this.other = loaded;
       scene.add(loaded.root);
-      if (scene.plain) this.uncoverOther = sketch(loaded.root);
+      if (scene.plain) this.uncoverOther = sketch(loaded.root, loaded.peelCut);
       else this.loadMaps(loaded);
       scene.pair({ left: loaded.root, right: this.face?.root ?? null });
       viewer.within.arrived = true;

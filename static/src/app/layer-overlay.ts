@@ -1,9 +1,10 @@
 // The layers under the skin of the face on the stage, peeled: fetched once, and where they are now a few times a second.
 
-import { Plane, Vector3 } from 'three';
 import type { Face } from '../face';
+import { createHollow } from '../inside/hollow';
 import type { LayersFrame } from '../inside/layers-frame';
 import { LayerView } from '../inside/layer-view';
+import { NOTHING_PEELED, Peel } from '../peel';
 import type { Scene } from '../scene';
 import type { ViewerState } from '../state/viewer.svelte';
 import type { Overlay } from './on-stage';
@@ -26,6 +27,8 @@ export interface LayerSource {
 export class LayerOverlay implements Overlay {
   private face: Face | null = null;
   private view: LayerView | null = null;
+  private peel: Peel | null = null;
+  private hollow: ReturnType<typeof createHollow> | null = null;
   private loading: Promise<LayerView> | null = null;
   /** Dermis and hypodermis against the skin over them, the bone against rest [m]: told, and shown. */
   private told: Float32Array = new Float32Array();
@@ -34,7 +37,6 @@ export class LayerOverlay implements Overlay {
   private askedAt = -Infinity;
   private stale = false;
   private steppedAt = 0;
-  private readonly plane = new Plane();
 
   constructor(
     private readonly viewer: ViewerState,
@@ -44,8 +46,9 @@ export class LayerOverlay implements Overlay {
 
   wear(face: Face | null): void {
     this.view?.dispose();
-    this.view = null;
-    this.loading = null;
+    this.hollow?.removeFromParent();
+    this.hollow?.material.dispose();
+    this.view = this.peel = this.hollow = this.loading = null;
     this.face = face;
     this.refresh();
   }
@@ -64,6 +67,9 @@ export class LayerOverlay implements Overlay {
         this.told = new Float32Array(9 * view.nodes);
         this.shown = new Float32Array(9 * view.nodes);
         face.carry(view.group);
+        this.peel = new Peel(face.peelable, view.outline);
+        this.hollow = createHollow(face);
+        face.skin.add(this.hollow);
         return view;
       })
       .catch((error: unknown) => {
@@ -93,7 +99,11 @@ export class LayerOverlay implements Overlay {
     }
     view?.peel(peel, { structural, shear });
     view?.cutAt(cut * METRES);
-    face?.clip(peel > 0 && view !== null ? this.plane : null);
+    if (face !== null && view !== null && this.peel !== null) {
+      face.peelCut.value = peel > 0 ? cut * METRES : NOTHING_PEELED;
+      this.peel.cutAt(face.peelCut.value);
+      this.hollow!.visible = peel > 0;
+    }
     if (peel > 0 && view !== null) {
       this.stale = true;
       this.place();
@@ -149,7 +159,7 @@ export class LayerOverlay implements Overlay {
     }
   }
 
-  /** Put the nodes where they are, and the cut where the head has turned to. */
+  /** Put the nodes where they are. */
   private place(): void {
     const view = this.view!;
     const { moved } = this.face!.tissue;
@@ -161,9 +171,5 @@ export class LayerOverlay implements Overlay {
       all[count + at] = skin + this.shown[at]!;
     }
     view.move(all);
-    view.group.updateWorldMatrix(true, false);
-    const cut = this.viewer.within.cut * METRES;
-    this.plane.setFromNormalAndCoplanarPoint(new Vector3(-1, 0, 0), new Vector3(cut, 0, 0));
-    this.plane.applyMatrix4(view.group.matrixWorld);
   }
 }

@@ -105,7 +105,7 @@ export class OnStage {
     this.newest = null;
     this.loading = false;
     mark('surface');
-    this.uncover = this.scene.plain ? sketch(loaded.root) : null;
+    this.uncover = this.scene.plain ? sketch(loaded.root, loaded.peelCut) : null;
     this.scene.add(loaded.root);
     this.scene.viewpoint.reframe();
     viewer.surfaceReady = true;

@@ -13,6 +13,10 @@ import {
   ShaderMaterial,
 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import type { Point } from '../vector';
+import type { Outline } from './outline';
+import { farFrom, outline } from './outline';
+import { Section } from './section';
 import { Skull } from './skull';
 
 /** Layers that the skin can be peeled to, outermost first; bone has no net of its own. */
@@ -40,6 +44,9 @@ export class LayerView {
   readonly skull: Skull;
   /** Nodes of a sheet. */
   readonly nodes: number;
+  /** Where the sheets end, at rest [m]. */
+  readonly outline: Outline;
+  private readonly section: Section;
   private readonly rest: Float32Array;
   private readonly positions: Float32BufferAttribute;
   private readonly sheets: Mesh<BufferGeometry, ShaderMaterial>[] = [];
@@ -48,6 +55,8 @@ export class LayerView {
     lines: LineSegments<BufferGeometry, ShaderMaterial>;
   }[] = [];
   private readonly cut = { value: 0 };
+  /** Number of the sheet that is seen. */
+  private reach = 0;
   /** Out of the face, at each node as the sheet that is seen has it. */
   private readonly outward: Float32BufferAttribute;
 
@@ -80,10 +89,23 @@ export class LayerView {
       1,
     );
     this.outward = new Float32BufferAttribute(new Float32Array(this.rest.length), 3);
+    const triangles = Array.from(sheets[0]!.geometry.getIndex()!.array);
+    const border = outline({ positions: places[0]!, triangles });
+    const placeOf = (node: number): Point =>
+      [0, 1, 2].map((axis) => places[0]![3 * node + axis]!) as unknown as Point;
+    const ring = border.map(placeOf);
+    const inset = farFrom(ring, places[0]!);
+    this.outline = { ring, middle: placeOf(inset.indexOf(Math.max(...inset))) };
+    const within = new Float32BufferAttribute(
+      SHEETS.flatMap(() => [...inset]),
+      1,
+    );
+    this.section = new Section(away.array.subarray(0, this.nodes), triangles, border, FILL);
     sheets.forEach(({ geometry }, at) => {
       const sheet = new BufferGeometry();
       sheet.setAttribute('position', this.positions);
       sheet.setAttribute('across', away);
+      sheet.setAttribute('inset', within);
       sheet.setAttribute('outward', this.outward);
       sheet.setIndex(Array.from(geometry.getIndex()!.array, (node) => node + at * this.nodes));
       this.sheets.push(new Mesh(sheet, flesh(FILL[at]!, this.cut)));
@@ -94,6 +116,7 @@ export class LayerView {
       const net = new BufferGeometry();
       net.setAttribute('position', this.positions);
       net.setAttribute('across', away);
+      net.setAttribute('inset', within);
       net.setAttribute('outward', this.outward);
       net.setIndex(geometry.getIndex());
       const color = springs.kind === 'shear' ? SHEAR : STRUCTURAL;
@@ -111,7 +134,7 @@ export class LayerView {
       this.group.add(drawn);
     }
     this.skull = new Skull(sheets.at(-1)!.geometry);
-    this.group.add(this.skull.mesh);
+    this.group.add(this.skull.mesh, this.section.mesh);
     this.peel(0, { structural: true, shear: true });
   }
 
@@ -122,6 +145,8 @@ export class LayerView {
       sheet.visible = to > 0 && at === Math.min(top + 1, SHEETS.length - 1);
     });
     this.turn();
+    this.reach = to === 0 ? 0 : Math.min(to, SHEETS.length - 1);
+    this.showSection();
     for (const { springs, lines } of this.nets) {
       const wanted = springs.kind === 'shear' ? shown.shear : shown.structural;
       lines.visible = to > 0 && wanted && springs.from === top;
@@ -131,6 +156,7 @@ export class LayerView {
   /** Show what lies further to the face's left than this [m]. */
   cutAt(x: number): void {
     this.cut.value = x;
+    this.showSection();
   }
 
   /** @param moved of all nodes from rest [m], sheet by sheet, outermost first. */
@@ -138,7 +164,13 @@ export class LayerView {
     const places = this.positions.array;
     for (let at = 0; at < places.length; at++) places[at] = this.rest[at]! + moved[at]!;
     this.positions.needsUpdate = true;
+    this.section.move(places);
     this.turn();
+  }
+
+  private showSection(): void {
+    this.section.show(this.reach, this.cut.value);
+    this.section.move(this.positions.array);
   }
 
   /** Find which way the sheet that is seen looks now. */
@@ -160,6 +192,7 @@ export class LayerView {
       geometry.dispose();
       material.dispose();
     }
+    this.section.dispose();
     this.skull.dispose();
   }
 }
@@ -186,6 +219,7 @@ function flesh(color: string, cut: Cut): ShaderMaterial {
     polygonOffsetUnits: 1,
     vertexShader: /* glsl */ `
       attribute float across;
+      attribute float inset;
       attribute vec3 outward;
       varying float vAcross;
       varying vec3 vNormal;
@@ -194,9 +228,11 @@ function flesh(color: string, cut: Cut): ShaderMaterial {
       void main() {
         vAcross = across;
         vNormal = normalMatrix * normal;
-        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), normalMatrix * outward, across - cut);
+        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), normalMatrix * outward, min(across - cut, inset));
       }`,
     fragmentShader: /* glsl */ `
+      // The inner side lies in the dark of the mouth, among flesh.
+      const vec3 INNER = vec3(0.24, 0.07, 0.06);
       uniform vec3 color;
       uniform float cut;
       varying float vAcross;
@@ -206,7 +242,7 @@ function flesh(color: string, cut: Cut): ShaderMaterial {
         vec3 n = normalize(vNormal) * (gl_FrontFacing ? 1.0 : -1.0);
         float key = max(0.0, dot(n, normalize(vec3(-0.35, 0.5, 0.8))));
         float fill = max(0.0, dot(n, normalize(vec3(0.7, -0.1, 0.5))));
-        gl_FragColor = vec4(color * (0.2 + 0.75 * key + 0.2 * fill) * (gl_FrontFacing ? 1.0 : 0.35), 1.0);
+        gl_FragColor = vec4(color * (0.2 + 0.75 * key + 0.2 * fill) * (gl_FrontFacing ? vec3(1.0) : INNER), 1.0);
         #include <colorspace_fragment>
       }`,
   });
@@ -219,13 +255,14 @@ function thread(color: string, opacity: number, cut: Cut): ShaderMaterial {
     depthWrite: false,
     vertexShader: /* glsl */ `
       attribute float across;
+      attribute float inset;
       attribute vec3 outward;
       varying float vAcross;
       uniform float cut;
       ${OVER_FLESH}
       void main() {
         vAcross = across;
-        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), normalMatrix * outward, across - cut);
+        gl_Position = overFlesh(modelViewMatrix * vec4(position, 1.0), normalMatrix * outward, min(across - cut, inset));
       }`,
     fragmentShader: /* glsl */ `
       uniform vec3 color;
