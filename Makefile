@@ -63,8 +63,8 @@ sheet: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 # The people's pictures in the viewer.
 portraits: $(STAMPS)/python-dev $(STAMPS)/viewer chromium
 	@mkdir -p static/public/people
-	$(BIN)/risorius sheet -o static/public/people --people --only rest --whole --view front --size 144
-	$(BIN)/risorius sheet -o static/public/people --rig standard,paper --only rest --whole --view front --size 144
+	$(BIN)/risorius sheet -o static/public/people --people --only rest --whole --view front --size 144 --cut-out
+	$(BIN)/risorius sheet -o static/public/people --rig standard,paper --only rest --whole --view front --size 144 --cut-out
 
 # Chromium for the browser test: the system's, else Debian's, else Playwright's own.
 chromium: $(STAMPS)/python-dev

@@ -47,6 +47,9 @@ def sheet(
     whole: Annotated[
         bool, typer.Option("--whole", help="Show the head, not the face alone.")
     ] = False,
+    cut_out: Annotated[
+        bool, typer.Option("--cut-out", help="Leave out the ground: PNG, into a folder.")
+    ] = False,
 ) -> None:
     """Draw every action unit and emotion, as the viewer shows them, on one picture."""
     from .explaining import did_you_mean
@@ -67,6 +70,7 @@ def sheet(
         only=(*SETS.get(only_set, ()), *words(only)),
         size=size,
         whole=whole,
+        cut_out=cut_out,
         edits=edits,
     )
     progress = Progress(TextColumn("{task.description}"), BarColumn(), console=console)

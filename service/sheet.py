@@ -33,6 +33,8 @@ _BACKGROUND = (24, 25, 28)
 _INK = (226, 226, 222)
 _QUALITY = 88
 """Of JPEG and WebP pictures."""
+_COLORS = 256
+"""Of pictures that are cut out, as many as a palette holds."""
 _SETTLED = """t => window.__viewer.ready && window.__viewer.textured !== false
     && window.__viewer.asleep && window.__viewer.tick > t"""
 
@@ -68,6 +70,7 @@ class Plan:
         only: Labels of the poses; all when empty.
         size: Side of a picture [pixels].
         whole: Show the head with its hair and neck, not the face alone.
+        cut_out: Leave the ground out, as PNG in a folder: whatever lies behind a picture is seen.
         edits: Each shown on a rig derived from every one of `rigs`, after the rig itself.
     """
 
@@ -76,6 +79,7 @@ class Plan:
     only: Sequence[str]
     size: int
     whole: bool = False
+    cut_out: bool = False
     edits: Sequence[Edit] = ()
 
 
@@ -117,8 +121,11 @@ def draw_sheet(output: Path, plan: Plan, *, columns: int, show: Show) -> int:
             raise SheetRefused(f"This cannot be drawn: {error}.") from error
     if output.is_dir():
         for label, png in pictures:
-            picture = Image.open(io.BytesIO(png)).convert("RGB").resize((plan.size, plan.size))
-            picture.save(output / f"{_slug(label)}.jpg", quality=_QUALITY)
+            picture = Image.open(io.BytesIO(png)).resize((plan.size, plan.size))
+            if plan.cut_out:
+                picture.convert("RGBA").quantize(_COLORS).save(output / f"{_slug(label)}.png")
+            else:
+                picture.convert("RGB").save(output / f"{_slug(label)}.jpg", quality=_QUALITY)
     else:
         tile(pictures, columns=columns, size=plan.size).save(output, quality=_QUALITY)
     return len(pictures)
@@ -215,7 +222,8 @@ def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[
             shown = call(page, "POST", f"{url}/api/rigs", {**edit.changes, "base": rig})
         poses = poses_of(shown, plan.only)
         session = call(page, "POST", f"{url}/api/sessions", {"rig": shown["id"]})["id"]
-        page.goto(f"{url}/?session={session}&bare=1&still=1&dpr=1")
+        ground = "&embed=1&level=high" if plan.cut_out else ""
+        page.goto(f"{url}/?session={session}&bare=1&still=1&dpr=1{ground}")
         page.wait_for_function(_SETTLED, arg=-1)
         for index, pose in enumerate(poses):
             show(f"{name}: {pose.label}", (number + index / len(poses)) / len(faces))
@@ -229,7 +237,8 @@ def _photograph(page: Page, url: str, plan: Plan, show: Show) -> Iterator[tuple[
                     named.insert(len(faces) > 1, pose.label)
                 whole = plan.whole or view in CLOSE_UPS
                 label = (", " if plan.edits else " ").join(named)
-                yield label, page.screenshot(clip=_frame_of(_side(page), whole))
+                clip = _frame_of(_side(page), whole)
+                yield label, page.screenshot(clip=clip, omit_background=plan.cut_out)
         call(page, "DELETE", f"{url}/api/sessions/{session}")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from engine import builtin_rig, lexicon, parse_facs
+from engine import builtin_rig, lexicon, parse_facs, people
 from service.sheet import Plan, SheetRefused, _fitting, _frame_of, _slug, draw_sheet, poses_of, tile
 from service.sheet_sets import SETS
 
@@ -101,3 +101,14 @@ def test_a_head_s_picture_is_cut_to_its_face_and_a_close_up_is_whole() -> None:
     face = _frame_of(402.0, False)
     assert face["width"] == face["height"] == pytest.approx(300.0)
     assert face["x"] == pytest.approx(51.0)
+
+
+def test_the_people_s_pictures_show_the_page_behind_them() -> None:
+    folder = Path(__file__).parents[2] / "static" / "public" / "people"
+    names = {*people(), "standard", "paper"}
+    assert {file.stem for file in folder.iterdir()} == names
+    for name in names:
+        with Image.open(folder / f"{name}.png") as taken:
+            alpha = taken.convert("RGBA").getchannel("A")
+        assert alpha.getpixel((0, alpha.height // 2)) == 0, name
+        assert alpha.getpixel((alpha.width // 2, alpha.height // 2)) > 240, name
