@@ -1,6 +1,7 @@
 """Processes that run the service's own code beside it.
 
-Run as a program, with the name of a module, this has that module end with its owner.
+Run as a program, with the number of its owner and the name of a module, this has that module end
+with its owner.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def bound(module: str) -> tuple[str, ...]:
     (`bystanders.py`) and cannot see its input end; from before it reads in any library, for it may
     be held from then on.
     """
-    return sys.executable, "-m", f"{__package__}.apart", module
+    return sys.executable, "-m", f"{__package__}.apart", str(os.getpid()), module
 
 
 def orders_and_answers() -> tuple[BinaryIO, BinaryIO]:
@@ -45,16 +46,18 @@ def orders_and_answers() -> tuple[BinaryIO, BinaryIO]:
     return sys.stdin.buffer, answers
 
 
-def _end_with_owner() -> None:
+def _end_with_owner(owner: int) -> None:
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):
             ctypes.CDLL(None).prctl(_SIGNAL_OF_DEATH, signal.SIGKILL, 0, 0, 0)
+        if os.getppid() != owner:
+            sys.exit()  # It ended before it could be seen to.
 
 
 def main() -> None:
     """Run the `main` of the module that is named, with the arguments that come after it."""
-    _end_with_owner()
-    del sys.argv[0]
+    _end_with_owner(int(sys.argv[1]))
+    del sys.argv[:2]
     importlib.import_module(f"{__package__}.{sys.argv[0]}").main()
 
 

@@ -10,7 +10,7 @@ import errno
 import gc
 import os
 import sys
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import structlog
 import typer
@@ -26,6 +26,9 @@ from . import (
 from .terminal import console as _console
 from .terminal import refuse as _refuse
 from .version import version
+
+if TYPE_CHECKING:
+    from .kernels import Compiling
 
 app = typer.Typer(
     help="A physically simulated face, driven by FACS.",
@@ -81,11 +84,18 @@ def serve(
     """Serve the viewer, the API and the stream."""
     # Nothing that imports make is garbage: looking for it takes a tenth of their time.
     gc.disable()
-    try:
-        from .kernels import begin_compiling
+    from .kernels import begin_compiling, end
 
-        # First: on a new machine it takes longest.
-        compiling = begin_compiling()
+    compiling = begin_compiling()  # First: on a new machine it takes longest.
+    try:
+        _serve(host, port, workers, compiling)
+    finally:
+        end(compiling)
+        gc.enable()
+
+
+def _serve(host: str | None, port: int | None, workers: int, compiling: Compiling | None) -> None:
+    try:
         from pydantic import ValidationError
 
         from .explaining import explain

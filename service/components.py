@@ -25,7 +25,7 @@ from .embedded import EmbeddedRunner
 from .expressions import Expressions
 from .guard import RateLimit
 from .insight import Insight
-from .kernels import Compiling, begin_compiling, compiled
+from .kernels import Compiling, begin_compiling, compiled, end
 from .keys import KeyRing
 from .loop_delay import LoopDelay
 from .metrics import Metrics
@@ -52,7 +52,7 @@ class Components:
     Attributes:
         ready: Set once kernels are compiled and the first rig is built.
         stage: What is being done until then, in words.
-        compiling: What was begun before there was an application.
+        compiling: Kernels that are being compiled, begun before there was an application or here.
     """
 
     settings: Settings
@@ -170,6 +170,7 @@ class Components:
             if task is not None:
                 task.cancel()
                 await asyncio.gather(task, return_exceptions=True)
+        await asyncio.to_thread(end, self.compiling)
         await self.clips.stop()
         await self.expressions.stop()
         await self.sessions.stop()
@@ -197,15 +198,15 @@ class Components:
         """Build the first rig and compile every kernel a face needs."""
         try:
             self.stage = "building the standard rig, compiling the simulation"
-            begun = self.compiling or await asyncio.to_thread(begin_compiling)
-            compiling = asyncio.create_task(compiled(begun))
+            if self.compiling is None:
+                self.compiling = await asyncio.to_thread(begin_compiling)
             try:
                 rig = await self.rigs.get("standard")
                 self.stage = "compiling the simulation"
                 warming = asyncio.to_thread(warm_surface, rig)
-                await asyncio.gather(self.rigs.surface(rig), warming, compiling)
+                await asyncio.gather(self.rigs.surface(rig), warming, compiled(self.compiling))
             finally:
-                compiling.cancel()
+                end(self.compiling)
             self.stage = "loading the simulation"
             await asyncio.to_thread(warm_kernels, rig)
             await self.runner.open(_WARM_UP, rig, Timeline((), 1.0), live_model(ModelChoice(), rig))

@@ -18,5 +18,10 @@ def face_file(order: FaceOrder) -> bytes:
     return face_to_glb(rig, order.face.frame(), textures=order.textures)
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Carry out orders until there are no more."""
     work(face_file)
+
+
+if __name__ == "__main__":
+    main()

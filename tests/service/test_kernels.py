@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import gc
+import importlib
+import pickle
 import sys
 import time
 from collections.abc import Callable
@@ -11,9 +14,11 @@ from pathlib import Path
 import pytest
 from conftest import settings_in, until
 from starlette.testclient import TestClient
+from typer.testing import CliRunner
 
-from service import components, kernels
+from service import compile_process, components, kernels
 from service.app import create_app
+from service.cli import app as command_line
 from service.kernels import begin_compiling, compiled
 
 Scripted = Callable[[str], None]
@@ -24,7 +29,7 @@ def scripted(monkeypatch: pytest.MonkeyPatch) -> Scripted:
     """Have another script in place of the compiler, on a machine that never compiled."""
 
     def put(script: str) -> None:
-        monkeypatch.setattr(kernels, "_COMMAND", (sys.executable, "-c", script))
+        monkeypatch.setattr(kernels, "bound", lambda _module: (sys.executable, "-c", script))
 
     monkeypatch.setattr(kernels, "kernels_are_kept", lambda: False)
     return put
@@ -42,11 +47,13 @@ def silent(mark: Path) -> bool:
     return not mark.exists()
 
 
-def test_the_process_compiles_what_moves_faces() -> None:
-    # On the machine of a test they are kept: it ends well and soon.
-    assert kernels._COMMAND[-1] == "compile_process"
-    done = kernels.subprocess.run(kernels._COMMAND, env=kernels.environment(), timeout=120)
-    assert done.returncode == 0
+def test_the_process_compiles_what_moves_faces(monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[str] = []
+    monkeypatch.setattr(compile_process, "compile_motion", lambda: done.append("motion"))
+    assert importlib.import_module(f"service.{kernels._MODULE}") is compile_process
+    compile_process.main()
+    gc.enable()
+    assert done == ["motion"]
 
 
 def test_it_is_waited_for(scripted: Scripted, tmp_path: Path) -> None:
@@ -65,7 +72,7 @@ def test_what_is_kept_takes_no_process(scripted: Scripted, monkeypatch: pytest.M
 def test_where_no_process_can_be_had_a_start_goes_on(
     scripted: Scripted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(kernels, "_COMMAND", ("/nowhere/python",))
+    monkeypatch.setattr(kernels, "bound", lambda _module: ("/nowhere/python",))
     compiling = begin_compiling()
     assert compiling is None
     asyncio.run(compiled(compiling))
@@ -89,6 +96,7 @@ def test_a_service_that_cannot_warm_up_does_not_wait_for_it(
     scripted: Scripted, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def fail(_rig: object) -> None:
+        until(mark.exists)
         raise OSError("no room")
 
     mark = tmp_path / "alive"
@@ -96,4 +104,32 @@ def test_a_service_that_cannot_warm_up_does_not_wait_for_it(
     monkeypatch.setattr(components, "warm_surface", fail)
     with TestClient(create_app(settings_in(tmp_path)), base_url="http://localhost") as client:
         until(lambda: "no room" in client.get("/api/ready").text, seconds=120)
-        assert not mark.exists() or silent(mark)
+        assert silent(mark)
+
+
+def test_a_cache_that_cannot_be_read_is_told_of_by_who_needs_it(
+    scripted: Scripted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken() -> bool:
+        raise pickle.UnpicklingError("pickle data was truncated")
+
+    scripted("")
+    monkeypatch.setattr(kernels, "kernels_are_kept", broken)
+    assert begin_compiling() is None
+
+
+def test_a_service_that_is_refused_leaves_nothing(
+    scripted: Scripted, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    begun: list[kernels.Compiling | None] = []
+
+    def begin() -> kernels.Compiling | None:
+        begun.append(begin_compiling())
+        return begun[-1]
+
+    scripted(writing(tmp_path / "alive"))
+    monkeypatch.setattr(kernels, "begin_compiling", begin)
+    assert CliRunner().invoke(command_line, ["serve", "--workers", "2"]).exit_code == 2
+    (compiling,) = begun
+    assert compiling is not None
+    assert compiling.poll() is not None
