@@ -51,6 +51,8 @@ export class Connection {
   private timer: ReturnType<typeof setTimeout> | null = null;
   private failures = 0;
   private openedAt = 0;
+  /** Until when the service asked to be left alone, on the page's clock [ms], and as an answer to what. */
+  private rest = { until: 0, reason: '', answer: 0 };
   /** Counts attempts, so that an answer to an abandoned one is not acted upon. */
   private attempt = 0;
   /** Frames since the last one that was taken, from the newest on that says all of a face. */
@@ -63,6 +65,19 @@ export class Connection {
   connect(): void {
     this.leave();
     void this.try(++this.attempt);
+  }
+
+  /** Connect as soon as the service may be asked: for whoever comes back without a person's wish. */
+  resume(): void {
+    const { until, reason, answer } = this.rest;
+    const left = until - Date.now();
+    if (left <= 0) {
+      this.connect();
+      return;
+    }
+    this.abandon();
+    this.tell('waiting', reason, answer);
+    this.tryIn(left);
   }
 
   close(): void {
@@ -162,14 +177,17 @@ export class Connection {
     this.failures++;
     // Half of the pause is chance, so that many viewers do not come back in the same instant.
     const wait = longest * (0.5 + 0.5 * (this.options.random ?? Math.random)());
+    const alone = Math.min(rest, LONGEST_REST_MS);
+    this.rest = { until: Date.now() + alone, reason, answer };
     this.tell('waiting', reason, answer);
-    this.timer = setTimeout(
-      () => {
-        this.timer = null;
-        void this.try(++this.attempt);
-      },
-      rest > 0 ? Math.min(rest, LONGEST_REST_MS) + wait : wait,
-    );
+    this.tryIn(alone + wait);
+  }
+
+  private tryIn(milliseconds: number): void {
+    this.timer = setTimeout(() => {
+      this.timer = null;
+      void this.try(++this.attempt);
+    }, milliseconds);
   }
 
   private tell(status: Status, detail = '', answer = 0): void {

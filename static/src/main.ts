@@ -64,7 +64,8 @@ const connection: Connection = new Connection({
   },
   onTrouble: (trouble) => {
     viewer.say(trouble.message);
-    if (page.embed) tellRefused(trouble);
+    // A warning is of what was obeyed, if only in part.
+    if (page.embed && trouble.type === 'error') tellRefused(trouble);
   },
   onStatus: (status, detail, answer) => {
     viewer.status = status;

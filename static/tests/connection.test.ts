@@ -183,6 +183,24 @@ describe('Connection', () => {
     expect(locate).toHaveBeenCalledTimes(2);
   });
 
+  it('comes back to one that wants to be left alone no sooner than it asks', async () => {
+    locate.mockRejectedValueOnce(new ApiError(429, 'Many faces move.', 5));
+    const connection = connect();
+    await vi.advanceTimersByTimeAsync(1000);
+    connection.close();
+    connection.resume();
+    await settled();
+    expect([locate.mock.calls.length, statuses.at(-1)]).toEqual([1, 'waiting']);
+    await vi.advanceTimersByTimeAsync(3999);
+    expect(locate).toHaveBeenCalledOnce();
+    await vi.advanceTimersByTimeAsync(1);
+    expect(locate).toHaveBeenCalledTimes(2);
+    connection.close();
+    connection.resume();
+    await settled();
+    expect(locate).toHaveBeenCalledTimes(3);
+  });
+
   it('stays closed when the service speaks another version', async () => {
     connect();
     await settled();

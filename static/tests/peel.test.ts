@@ -1,7 +1,8 @@
 // Hair goes with the skin that is peeled, a strand at a time.
 
-import { BufferGeometry, Float32BufferAttribute } from 'three';
+import { BufferGeometry, Float32BufferAttribute, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
+import { createHollow } from '../src/inside/hollow';
 import { NOTHING_PEELED, Peel } from '../src/peel';
 import type { Outline } from '../src/inside/outline';
 import type { Point } from '../src/vector';
@@ -62,5 +63,13 @@ describe('a face that is peeled', () => {
     const peeling = face.skin.getAttribute('peeling');
     expect([peeling.getX(at(4, 4)), peeling.getY(at(4, 4))]).toEqual([2, 4]);
     expect(peeling.getX(at(0, 4))).toBe(-2);
+  });
+});
+
+describe('the inner side of the skin', () => {
+  it('is not drawn before something is peeled', () => {
+    const skin = new Mesh(flat().skin);
+    const hollow = createHollow({ skin, peelCut: { value: NOTHING_PEELED }, neckFade: null });
+    expect([hollow.visible, hollow.geometry === skin.geometry]).toEqual([false, true]);
   });
 });

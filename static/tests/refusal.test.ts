@@ -22,10 +22,15 @@ describe('a refusal', () => {
 
 describe('a visitor', () => {
   const words = (status: 'open' | 'waiting' | 'closed', answer: number, locked = ''): string =>
-    visitorWords({ status, answer, locked });
+    visitorWords({ status, answer, locked, isRefused: status === 'closed' });
 
   it('reads nothing while all is well', () => {
     expect(words('open', 0)).toBe('');
+  });
+
+  it('reads nothing of a face that rests out of sight', () => {
+    const resting = { status: 'closed', answer: 0, locked: '', isRefused: false } as const;
+    expect(visitorWords(resting)).toBe('');
   });
 
   it('is told apart what passes, what is over and what was never there', () => {

@@ -18,17 +18,18 @@ describe('Welcoming', () => {
   let working = false;
   let failure: Error;
   let given: unknown[] = [];
+  let opening: Pick<Opening, 'session' | 'isGuest' | 'countViewers'>;
   /** What a face on its way waits for. */
   let slow: Promise<void> | null = null;
   const make = (): Welcoming => {
-    const opening = { session: '', isGuest: false, countViewers: () => Promise.resolve() };
+    opening = { session: '', isGuest: false, countViewers: () => Promise.resolve() };
     const stage = {
       address: '',
       loading: false,
       show: (address: string) => {
         shown++;
-        stage.loading = true;
         if (!working) return Promise.reject(failure);
+        stage.loading = true;
         stage.address = address;
         return (slow ?? Promise.resolve()).then(() => {
           stage.loading = false;
@@ -86,6 +87,24 @@ describe('Welcoming', () => {
     await make().take(HELLO);
     await vi.advanceTimersByTimeAsync(60_000);
     expect([shown, given]).toEqual([1, [failure]]);
+  });
+
+  it('leaves a busy service alone for as long as it asks', async () => {
+    failure = new ApiError(503, 'Busy.', 9);
+    await make().take(HELLO);
+    await vi.advanceTimersByTimeAsync(8999);
+    expect(shown).toBe(1);
+    await vi.advanceTimersByTimeAsync(1);
+    expect(shown).toBe(2);
+  });
+
+  it('does not give up the next face for the one that it left', async () => {
+    failure = new ApiError(404, 'No rig is called r.');
+    const welcoming = make();
+    const taken = welcoming.take(HELLO);
+    opening.session = '';
+    await taken;
+    expect(given).toEqual([]);
   });
 
   it('leaves a face that the page has gone on from while it was on its way', async () => {

@@ -76,7 +76,7 @@ export function embed(
     seen = now;
     // What was refused for good is not asked for again at every turn of the page.
     if (!viewer.isRefused) {
-      if (seen) connection.connect();
+      if (seen) connection.resume();
       else connection.close();
     }
     tell();

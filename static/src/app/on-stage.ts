@@ -92,7 +92,10 @@ export class OnStage {
     if (sample !== null) this.scene.rehearse(sample.root);
     const loaded = await loading.catch((error: unknown) => {
       sample?.dispose();
-      if (this.address === address) this.address = '';
+      if (this.address === address) {
+        this.address = '';
+        this.loading = false;
+      }
       throw error;
     });
     if (this.address !== address) {

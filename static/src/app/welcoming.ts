@@ -5,7 +5,7 @@ import type { Level } from '../level';
 import { atLevel } from '../level';
 import { mark } from '../marks';
 import type { Hello } from '../protocol';
-import { isFinal } from '../refusal';
+import { isFinal, restOf } from '../refusal';
 import type { ViewerState } from '../state/viewer.svelte';
 import { curtain } from './curtain';
 import type { OnStage } from './on-stage';
@@ -76,8 +76,9 @@ export class Welcoming {
       viewer.step = null;
       void stage.finish();
       viewer.say(error instanceof Error ? error.message : 'The face cannot be loaded.');
-      if (!isFinal(error)) this.tryAgain(left ? (this.newest ?? hello) : hello, tries);
-      else if (hello.type === 'hello') this.giveUp(error);
+      const rest = restOf(error);
+      if (!isFinal(error)) this.tryAgain(left ? (this.newest ?? hello) : hello, tries, rest);
+      else if (!left && hello.type === 'hello') this.giveUp(error);
     }
   }
 
@@ -95,8 +96,11 @@ export class Welcoming {
     if (told.rigId === rig) this.described = hello.session;
   }
 
-  /** Unless the page has gone on to another face meanwhile. */
-  private tryAgain(hello: Hello, tries: number): void {
+  /**
+   * Unless the page has gone on to another face meanwhile.
+   * @param rest how long the service asked to be left alone at least [ms].
+   */
+  private tryAgain(hello: Hello, tries: number, rest: number): void {
     if (tries >= MOST_TRIES) return;
     clearTimeout(this.again);
     this.again = setTimeout(
@@ -108,7 +112,7 @@ export class Welcoming {
         // An edit may have moved the session to another rig meanwhile.
         void this.take({ ...hello, rig: this.newest?.rig ?? hello.rig }, tries + 1);
       },
-      TRY_AGAIN_MS * 2 ** tries,
+      Math.max(TRY_AGAIN_MS * 2 ** tries, rest),
     );
   }
 }

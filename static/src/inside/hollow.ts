@@ -12,7 +12,7 @@ export interface Hollow {
   neckFade: readonly [number, number] | null;
 }
 
-/** To be added to the skin, whose geometry it shares: only its material is its own. */
+/** To be added to the skin, whose geometry it shares, and shown where that is peeled: only its material is its own. */
 export function createHollow({
   skin,
   peelCut,
@@ -47,5 +47,6 @@ export function createHollow({
   });
   const mesh = new Mesh(skin.geometry, material);
   mesh.frustumCulled = false;
+  mesh.visible = false;
   return mesh;
 }
