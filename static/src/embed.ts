@@ -68,7 +68,7 @@ class RisoriusFace extends HTMLElement {
     const names = Array.isArray(known) && known.length > 0 ? ` It knows: ${known.join(', ')}.` : '';
     // Who writes the page looks there first.
     // eslint-disable-next-line no-console
-    console.warn(`<risorius-face>: ${words.replace(/\.?$/, '.')}${names}`);
+    console.warn(`<risorius-face>: ${words.replace(/[.?]?$/, (end) => end || '.')}${names}`);
     this.dispatchEvent(new CustomEvent('refused', { detail: { words, known } }));
   }
 
