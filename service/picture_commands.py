@@ -60,6 +60,8 @@ def sheet(
     if only_set and only_set not in SETS:
         hint = did_you_mean(only_set, list(SETS))
         refuse(f"There is no set {only_set!r}{hint or '; there are ' + ', '.join(SETS)}.")
+    if cut_out and not output.is_dir():
+        refuse(f"{output} is no folder; --cut-out writes a picture each into one: make it first.")
     try:
         edits = read_edits(edit or ())
     except EditRefused as refused:

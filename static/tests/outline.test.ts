@@ -4,22 +4,7 @@ import { describe, expect, it } from 'vitest';
 import { farFrom, insideOf, outline } from '../src/inside/outline';
 import type { Outline } from '../src/inside/outline';
 import type { Point } from '../src/vector';
-
-const WIDE = 9;
-
-/** A flat skin of squares 1 wide, 8 by 8, each of two triangles. */
-function skin(): { positions: number[]; triangles: number[] } {
-  const positions: number[] = [];
-  const triangles: number[] = [];
-  for (let y = 0; y < WIDE; y++) for (let x = 0; x < WIDE; x++) positions.push(x, y, 0);
-  for (let y = 0; y + 1 < WIDE; y++) {
-    for (let x = 0; x + 1 < WIDE; x++) {
-      const at = y * WIDE + x;
-      triangles.push(at, at + 1, at + WIDE + 1, at, at + WIDE + 1, at + WIDE);
-    }
-  }
-  return { positions, triangles };
-}
+import { flatSkin, WIDE } from './flat-skin';
 
 /** A square 4 wide in the middle of it. */
 const RING: Point[] = [
@@ -32,7 +17,7 @@ const OUTLINE: Outline = { ring: RING, middle: [3.9, 4.1, 0] };
 
 describe('the outline of a sheet', () => {
   it('goes round it, not round a hole in it', () => {
-    const { positions, triangles } = skin();
+    const { positions, triangles } = flatSkin();
     const hole = (3 * WIDE + 3) * 2;
     expect(triangles.splice(hole, 3)).toHaveLength(3);
     const ring = outline({ positions, triangles });
@@ -46,13 +31,13 @@ describe('the outline of a sheet', () => {
   });
 
   it('says how far inside it a vertex of the skin lies, and outside with a minus', () => {
-    const inside = insideOf(OUTLINE, skin(), null);
+    const inside = insideOf(OUTLINE, flatSkin(), null);
     const at = (x: number, y: number): number => inside[y * WIDE + x]!;
     expect([at(4, 4), at(3, 3), at(2, 4), at(1, 4), at(4, 8)]).toEqual([2, 1, 0, -1, -2]);
   });
 
   it('is not stepped over where the skin is cut along a seam', () => {
-    const { positions, triangles } = skin();
+    const { positions, triangles } = flatSkin();
     // The column through the middle stands twice, and the right half has the other one.
     const same = Array.from({ length: WIDE * WIDE }, (_, vertex) => vertex);
     const twin = new Map<number, number>();

@@ -6,8 +6,8 @@ import { createHollow } from '../src/inside/hollow';
 import { NOTHING_PEELED, Peel } from '../src/peel';
 import type { Outline } from '../src/inside/outline';
 import type { Point } from '../src/vector';
+import { flatSkin, WIDE } from './flat-skin';
 
-const WIDE = 9;
 const RING: Point[] = [
   [2, 2, 0],
   [6, 2, 0],
@@ -17,17 +17,9 @@ const RING: Point[] = [
 const OUTLINE: Outline = { ring: RING, middle: [3.9, 4.1, 0] };
 
 function flat(): { skin: BufferGeometry; positions: number[] } {
-  const positions: number[] = [];
-  const index: number[] = [];
-  for (let y = 0; y < WIDE; y++) for (let x = 0; x < WIDE; x++) positions.push(x, y, 0);
-  for (let y = 0; y + 1 < WIDE; y++) {
-    for (let x = 0; x + 1 < WIDE; x++) {
-      const at = y * WIDE + x;
-      index.push(at, at + 1, at + WIDE + 1, at, at + WIDE + 1, at + WIDE);
-    }
-  }
+  const { positions, triangles } = flatSkin();
   const skin = new BufferGeometry();
-  skin.setIndex(index);
+  skin.setIndex(triangles);
   return { skin, positions };
 }
 

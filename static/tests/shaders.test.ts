@@ -14,20 +14,26 @@ function physical(): Program {
   return { vertexShader, fragmentShader, uniforms: {} };
 }
 
+/** The program of skin that has every map. */
+function skinProgram(): Program {
+  const program = physical();
+  const value = { value: null };
+  makeSkin(program, {
+    neckFade: value,
+    peelCut: value,
+    mapsShown: value,
+    albedoMap: value,
+    reliefMap: value,
+    ormMap: value,
+    wrinkleMap: value,
+    poreMap: value,
+  });
+  return program;
+}
+
 describe('the skin s program', () => {
   it('answers lights in its own way, with shadows and surroundings of its own', () => {
-    const program = physical();
-    const value = { value: null };
-    makeSkin(program, {
-      neckFade: value,
-      peelCut: value,
-      mapsShown: value,
-      albedoMap: value,
-      reliefMap: value,
-      ormMap: value,
-      wrinkleMap: value,
-      poreMap: value,
-    });
+    const program = skinProgram();
     expect(program.fragmentShader).toContain('#define RE_Direct RE_Direct_Skin');
     expect(program.fragmentShader).toContain('scatteredShadow( ( directLight.visible');
     expect(program.fragmentShader).toContain('skinSmooth, 0.65 * skinBare');
@@ -39,16 +45,7 @@ describe('the skin s program', () => {
   });
 
   it('darkens the floors of furrows, not their walls, and shades broad folds in every colour', () => {
-    const program = physical();
-    const value = { value: null };
-    const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
-    makeSkin(program, {
-      neckFade: value,
-      peelCut: value,
-      mapsShown: value,
-      poreMap: value,
-      ...maps,
-    });
+    const program = skinProgram();
     expect(program.fragmentShader).toContain('float depth = vWrinkle * (1.0 - furrows.z)');
     expect(program.fragmentShader).toContain('vec3(dot(skinFolded, light)), BLUR');
     const [red, green, blue] = /FURROW vec3\((.*?), (.*?), (.*?)\)/
@@ -59,30 +56,12 @@ describe('the skin s program', () => {
   });
 
   it('lets light from behind reach only edges that stand free', () => {
-    const program = physical();
-    const value = { value: null };
-    const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
-    makeSkin(program, {
-      neckFade: value,
-      peelCut: value,
-      mapsShown: value,
-      poreMap: value,
-      ...maps,
-    });
+    const program = skinProgram();
     expect(program.fragmentShader).toMatch(/float edge = .*smoothstep\(0\.78, 0\.92, skinOpen\)/);
   });
 
   it('draws the walls of the mouth behind what lies in it', () => {
-    const program = physical();
-    const value = { value: null };
-    const maps = { albedoMap: value, reliefMap: value, ormMap: value, wrinkleMap: value };
-    makeSkin(program, {
-      neckFade: value,
-      peelCut: value,
-      mapsShown: value,
-      poreMap: value,
-      ...maps,
-    });
+    const program = skinProgram();
     expect(program.vertexShader).toContain('gl_Position.z = behind.z');
   });
 });

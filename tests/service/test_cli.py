@@ -189,6 +189,11 @@ def test_a_sheet_says_which_views_there_are(tmp_path: Path) -> None:
     assert "three-quarter" in refused(run("sheet", "-o", tmp_path / "a.png", "--view", "behind"))
 
 
+def test_a_sheet_that_is_cut_out_wants_a_folder(tmp_path: Path) -> None:
+    said = refused(run("sheet", "-o", tmp_path / "a.png", "--cut-out"))
+    assert "a.png is no folder" in said
+
+
 def test_a_sheet_says_what_is_no_edit(tmp_path: Path) -> None:
     said = refused(run("sheet", "-o", tmp_path / "a.png", "--edit", '{"palsi": {}}'))
     assert said.rstrip().endswith("did you mean 'palsy' or 'passing'?")

@@ -22,7 +22,8 @@ type Piece = readonly [Post, Post];
 export class Section {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly border: Piece[];
-  private cut: Piece[] = [];
+  /** What the bands go along: the cut, and of the border what lies beyond that. */
+  private pieces: Piece[] = [];
   private at = NaN;
   private sheets = 0;
 
@@ -45,7 +46,10 @@ export class Section {
   /** Show the bands over the sheet of this number, cut where the points are this far to the left; no sheet, no bands. */
   show(sheets: number, cut: number): void {
     if (cut === this.at && sheets === this.sheets) return;
-    this.cut = cutOf(this.triangles, this.across, cut);
+    this.pieces = [
+      ...cutOf(this.triangles, this.across, cut),
+      ...this.border.flatMap((piece) => beyond(piece, this.across, cut)),
+    ];
     [this.at, this.sheets] = [cut, sheets];
     this.mesh.visible = sheets > 0;
     const count = 6 * sheets * this.pieces.length;
@@ -67,11 +71,11 @@ export class Section {
     const nodes = this.across.length;
     let vertex = 0;
     const put = ({ from, to, share }: Post, sheet: number): void => {
-      const [a, b] = [3 * (from + sheet * nodes), 3 * (to + sheet * nodes)];
-      const [x, y, z] = [0, 1, 2].map(
-        (axis) => positions[a + axis]! + share * (positions[b + axis]! - positions[a + axis]!),
-      ) as [number, number, number];
-      places.setXYZ(vertex++, x, y, z);
+      const a = 3 * (from + sheet * nodes);
+      const b = 3 * (to + sheet * nodes);
+      const between = (axis: number): number =>
+        positions[a + axis]! + share * (positions[b + axis]! - positions[a + axis]!);
+      places.setXYZ(vertex++, between(0), between(1), between(2));
     };
     for (const [one, other] of this.pieces) {
       for (let sheet = 0; sheet < this.sheets; sheet++) {
@@ -89,11 +93,6 @@ export class Section {
   dispose(): void {
     this.mesh.geometry.dispose();
     this.mesh.material.dispose();
-  }
-
-  /** What the bands go along: the cut, and of the border what lies beyond that. */
-  private get pieces(): Piece[] {
-    return [...this.cut, ...this.border.flatMap((piece) => beyond(piece, this.across, this.at))];
   }
 }
 
